@@ -1,0 +1,1 @@
+"""Contact laws between bodies: one law a file."""
