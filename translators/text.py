@@ -1,0 +1,415 @@
+"""Text decks: fixed-width fields, block parsing, and faults that name their place. Shared by all readers.
+
+A deck is a file of lines ("cards") cut into fixed columns as a Fortran format says. `Layout` holds the columns of one
+kind of card, `Cards` hands out the cards of a file in order, `real_text` writes a number into a field.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+MAX_FAULTS = 20
+_CHUNK = 20_000  # cards parsed at a time: the cut-out columns stay in the cache
+_REAL = re.compile(r"([+-]?)(\d+\.?\d*|\.\d+)(?:[EeDdQq]([+-]?\d+)|([+-]\d+))?$")
+_INTEGER = re.compile(r"[+-]?\d+$")
+_BLANK = ord(" ")
+
+
+def _table(characters: bytes) -> NDArray[np.bool_]:
+    table = np.zeros(256, bool)
+    table[list(characters)] = True
+    return table
+
+
+_INTEGER_CHARACTERS = _table(b"0123456789+- ")
+_DIGITS_OR_BLANK = _table(b"0123456789 ")
+_REAL_CHARACTERS = _table(b"0123456789+-.eE ")
+_D_TO_E = np.arange(256, dtype=np.uint8)
+_D_TO_E[[ord("d"), ord("D")]] = ord("E")
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Fault:
+    """One thing wrong in a file. line, column: from 1; text: the offending text; expected: what should stand there."""
+
+    path: str
+    line: int
+    column: int
+    message: str
+    text: str = ""
+    expected: str = ""
+
+    def __str__(self) -> str:
+        said = f"{self.path}:{self.line}:{self.column}: error: {self.message}"
+        said += f" ({self.text})" if self.text else ""
+        return said + (f"; expected {self.expected}" if self.expected else "")
+
+
+class InputError(Exception):
+    """A file that cannot be used. Its text is one line a fault."""
+
+    def __init__(self, faults: Sequence[Fault]) -> None:
+        self.faults = list(faults)
+        super().__init__("\n".join(str(fault) for fault in self.faults))
+
+
+@dataclass(slots=True)
+class Faults:
+    """Collects the faults of one file, so that a reader can go on after the first."""
+
+    path: str
+    found: list[Fault] = field(default_factory=list)
+
+    def add(self, line: int, column: int, message: str, text: str = "", expected: str = "") -> None:
+        """Note a fault; raises InputError at the twentieth."""
+        self.found.append(Fault(self.path, line, column, message, text, expected))
+        if len(self.found) >= MAX_FAULTS:
+            self.stop()
+
+    def stop(self) -> None:
+        """Raise InputError when there are faults."""
+        if self.found:
+            raise InputError(sorted(set(self.found)))
+
+
+def read_bytes(path: Path | str) -> bytes:
+    """The bytes of a file; InputError when it is missing, unreadable or empty."""
+    where = Path(path)
+    try:
+        data = where.read_bytes()
+    except OSError as error:
+        reason = (
+            "no such file" if isinstance(error, FileNotFoundError) else (error.strerror or "cannot be read").lower()
+        )
+        raise InputError([Fault(str(path), 1, 1, reason, expected="a readable file")]) from error
+    if not data.strip():
+        raise InputError([Fault(str(path), 1, 1, "the file is empty", expected="a mesh or a deck")])
+    return data
+
+
+def write_atomically(path: Path | str, chunks: Iterable[bytes]) -> None:
+    """Write a file under a temporary name in its folder and rename it: it appears whole or not at all."""
+    target = Path(path)
+    temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
+    try:
+        with temporary.open("wb") as out:
+            for chunk in chunks:
+                out.write(chunk)
+        temporary.replace(target)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def parse_real(text: str, implied: int = 0) -> float | None:
+    """A Fortran real: `1.0D+00`, `1.5-3`, blank = 0; None when it is none.
+
+    implied: decimals that the format implies (the 5 of e10.5): without a point the digits are scaled by 10^-implied.
+    """
+    text = text.strip()
+    if not text:
+        return 0.0
+    match = _REAL.match(text)
+    if match is None:
+        return None
+    sign, mantissa, exponent, bare_exponent = match.groups()
+    power = int(exponent or bare_exponent or 0)
+    if "." not in mantissa:
+        power -= implied
+    return float(f"{sign}{mantissa}e{power}")
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """A field of a card: columns start..end (from 0, end excluded), kind `i`, `e` or `a`, implied decimals."""
+
+    name: str
+    start: int
+    end: int
+    kind: str
+    implied: int = 0
+
+
+class Layout:
+    """The columns of one kind of card.
+
+    format: as Fortran writes it, e.g. "2i5,e10.0,a72"; names: one word a field, separated by blanks.
+    """
+
+    def __init__(self, format: str, names: str) -> None:
+        self.format = format
+        self.fields: dict[str, Field] = {}
+        words = iter(names.split())
+        column = 0
+        for item in format.split(","):
+            match = re.fullmatch(r"(\d*)([iea])(\d+)(?:\.(\d+))?", item)
+            if match is None:
+                raise ValueError(f"not a Fortran format: {item}")
+            width = int(match[3])
+            for _ in range(int(match[1] or 1)):
+                name = next(words)
+                self.fields[name] = Field(name, column, column + width, match[2], int(match[4] or 0))
+                column += width
+        self.width = column
+
+
+class Block:
+    """Cards of one layout. values: an array a numeric field, shape (n,), by name (int64 or float64)."""
+
+    def __init__(self, cards: Cards, layout: Layout, first: int, count: int) -> None:
+        self.layout = layout
+        self.values: dict[str, NDArray[Any]] = {}
+        self._cards = cards
+        self._first = first
+        self._count = count
+        for f in layout.fields.values():
+            if f.kind != "a":
+                self.values[f.name] = np.zeros(count, np.int64 if f.kind == "i" else np.float64)
+        for start in range(0, count, _CHUNK):
+            stop = min(start + _CHUNK, count)
+            grid = cards.grid(first + start, first + stop, layout.width)
+            for f in layout.fields.values():
+                if f.kind != "a":
+                    self.values[f.name][start:stop] = self._parse(f, grid[:, f.start : f.end], start)
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        return self.values[name]
+
+    def line(self, i: int) -> int:
+        """Line of card i in its file, from 1."""
+        return self._cards.line(self._first + i)
+
+    def text(self, name: str, i: int = 0) -> str:
+        """The text of a field of card i, without the blanks around it."""
+        f = self.layout.fields[name]
+        return self._cards.text(self._first + i)[f.start : f.end].strip()
+
+    def fault(self, i: int, name: str, message: str, expected: str = "") -> None:
+        """Note a fault in a field of card i."""
+        f = self.layout.fields[name]
+        raw = self._cards.text(self._first + i)[f.start : f.end]
+        column = f.start + 1 + (len(raw) - len(raw.lstrip()) if raw.strip() else 0)
+        self._cards.faults.add(self.line(i), column, message, raw.strip() or "blank", expected)
+
+    def check(self, name: str, good: NDArray[np.bool_] | bool, message: str, expected: str = "") -> None:
+        """Note a fault at each card whose `good` is false."""
+        for i in np.flatnonzero(~np.atleast_1d(good))[:MAX_FAULTS].tolist():
+            self.fault(i, name, message, expected)
+
+    def _parse(self, f: Field, columns: NDArray[np.uint8], start: int) -> NDArray[Any]:
+        """Numbers of one field in a chunk of cards: all at once; card by card only where that cannot be done."""
+        dtype = np.int64 if f.kind == "i" else np.float64
+        if f.kind == "e":
+            columns = _D_TO_E[columns]
+        blank = (columns == _BLANK).all(axis=1)
+        if blank.all():
+            return np.zeros(len(columns), dtype)
+        table = _INTEGER_CHARACTERS if f.kind == "i" else _REAL_CHARACTERS
+        if f.implied == 0 and table[columns].all():
+            if blank.any():
+                columns = columns.copy()
+                columns[blank, 0] = ord("0")
+            texts = np.ascontiguousarray(columns).view(f"S{f.end - f.start}")[:, 0]
+            try:
+                numbers = texts.astype(dtype)
+            except (ValueError, OverflowError):
+                pass
+            else:
+                if np.isfinite(numbers).all():
+                    return numbers
+        return np.array([self._parse_one(f, start + i) for i in range(len(columns))], dtype)
+
+    def _parse_one(self, f: Field, i: int) -> float:
+        text = self.text(f.name, i)
+        if f.kind == "i":
+            if _INTEGER.match(text):
+                return int(text)
+            if text:
+                self.fault(i, f.name, f"{f.name} is not an integer", f"digits in columns {f.start + 1}-{f.end}")
+            return 0
+        number = parse_real(text, f.implied)
+        if number is None:
+            self.fault(i, f.name, f"{f.name} is not a number", f"a number in columns {f.start + 1}-{f.end}")
+            return 0.0
+        if not np.isfinite(number):
+            self.fault(i, f.name, f"{f.name} is not a finite number", "a number below 1.8E308")
+            return 0.0
+        return number
+
+
+class Card:
+    """One card: its numbers by field name."""
+
+    def __init__(self, block: Block) -> None:
+        self.block = block
+        self.line = block.line(0)
+
+    def __getitem__(self, name: str) -> Any:
+        return self.block.values[name][0].item()
+
+    def text(self, name: str) -> str:
+        """The text of a field, without the blanks around it."""
+        return self.block.text(name)
+
+    def fault(self, name: str, message: str, expected: str = "") -> None:
+        """Note a fault in a field."""
+        self.block.fault(0, name, message, expected)
+
+    def check(self, name: str, good: bool, message: str, expected: str = "") -> None:
+        """Note a fault in a field unless `good`."""
+        if not good:
+            self.fault(name, message, expected)
+
+
+class Cards:
+    """The cards of a deck in order: the lines of a text file without its comments.
+
+    comments: bytes that make a line a comment when they stand in its first column. An empty line is a card.
+    """
+
+    def __init__(self, path: Path | str, data: bytes, *, comments: bytes) -> None:
+        self.faults = Faults(str(path))
+        self._data = data
+        self._bytes = np.frombuffer(data, np.uint8)
+        ends = np.flatnonzero(self._bytes == ord("\n"))
+        starts = np.concatenate(([0], ends + 1))
+        ends = np.concatenate((ends, [len(data)]))
+        if starts[-1] == len(data):  # the newline that ends the last line begins no further one
+            starts, ends = starts[:-1], ends[:-1]
+        self._lines = len(starts)
+        keep = np.flatnonzero(~_table(comments)[self._bytes[np.minimum(starts, len(data) - 1)]] | (starts == ends))
+        carriage_return = (ends > starts) & (self._bytes[np.maximum(ends - 1, 0)] == ord("\r"))
+        self._starts = starts[keep]
+        self._ends = (ends - carriage_return)[keep]
+        self._numbers = keep + 1
+        self._next = 0
+
+    @property
+    def left(self) -> int:
+        """Cards not yet read."""
+        return len(self._starts) - self._next
+
+    def line(self, card: int) -> int:
+        """Line of a card (from 0) in its file, from 1."""
+        return int(self._numbers[card]) if card < len(self._numbers) else self._lines + 1
+
+    @property
+    def next_line(self) -> int:
+        """Line of the next card."""
+        return self.line(self._next)
+
+    def text(self, card: int) -> str:
+        """A card's line."""
+        return self._data[self._starts[card] : self._ends[card]].decode("latin-1")
+
+    def grid(self, first: int, last: int, width: int) -> NDArray[np.uint8]:
+        """Bytes of the cards first..last (excluded), shape (n, width): cut, and filled with blanks."""
+        starts, lengths = self._starts[first:last], (self._ends - self._starts)[first:last]
+        columns = np.arange(width)
+        grid = self._bytes[np.minimum(starts[:, None] + columns, len(self._bytes) - 1)]
+        if len(lengths) and lengths.min() < width:
+            grid[columns >= lengths[:, None]] = _BLANK
+        return grid
+
+    def increasing_run(self, number: Field) -> int:
+        """How many of the next cards carry increasing positive integers in a field."""
+        run, last = 0, 0
+        for first in range(self._next, len(self._starts), _CHUNK):
+            columns = self.grid(first, min(first + _CHUNK, len(self._starts)), number.end)[:, number.start :]
+            numbers = np.zeros(len(columns), np.int64)
+            for column in columns.T:
+                digit = column - np.int64(ord("0"))
+                numbers = np.where(column == _BLANK, numbers, 10 * numbers + digit)
+            good = _DIGITS_OR_BLANK[columns].all(axis=1) & (np.diff(numbers, prepend=last) > 0)
+            if not good.all():
+                return run + int(np.argmin(good))
+            run, last = run + len(good), int(numbers[-1])
+        return run
+
+    def peek(self, layout: Layout, count: int) -> Block:
+        """The next cards, at most `count`, without going past them."""
+        return Block(self, layout, self._next, min(count, self.left))
+
+    def block(self, layout: Layout, count: int, what: str) -> Block:
+        """The next `count` cards; raises InputError where the file ends before them."""
+        block = Block(self, layout, self._next, min(count, self.left))
+        if count > self.left:
+            number = f" {self.left + 1} of {count}" if count > 1 else ""
+            self.faults.add(self._lines + 1, 1, "the file ends here", expected=f"{what}{number}")
+            self.faults.stop()
+        self._next += count
+        return block
+
+    def card(self, layout: Layout, what: str) -> Card:
+        """The next card; raises InputError where the file ends before it."""
+        return Card(self.block(layout, 1, what))
+
+
+def real_text(value: float, width: int, *, implied: int = 0) -> tuple[str, bool]:
+    """The shortest readable text of a number that fits a field and reads back as the same double.
+
+    Returns the text and whether it is exact: where no exact text fits, the closest that does. It has a decimal point
+    unless only digits fit (never so where the format implies decimals). Raises ValueError when nothing fits.
+    """
+    shortest = repr(float(value))
+    if "e" not in shortest and len(shortest) <= width:
+        return shortest, True
+    sign, digits, exponent = _decimal(shortest)
+    for text in _spellings(sign, digits, exponent, implied):
+        if len(text) <= width:
+            return text, True
+    for count in range(min(len(digits), width), 0, -1):
+        for text in _spellings(*_decimal(f"{value:.{count - 1}e}"), implied):
+            if len(text) <= width:
+                return text, False
+    raise ValueError(f"{value!r} does not fit {width} columns")
+
+
+def _decimal(text: str) -> tuple[str, str, int]:
+    """Sign, significant digits d1 d2 .. and exponent e of a decimal number: 0.d1d2.. x 10^e."""
+    sign, text = ("-", text[1:]) if text.startswith("-") else ("", text)
+    mantissa, _, power = text.partition("e")
+    whole, _, fraction = mantissa.partition(".")
+    digits = (whole + fraction).lstrip("0")
+    exponent = len(whole) + int(power or 0) - (len(whole + fraction) - len(digits))
+    return sign, digits.rstrip("0") or "0", exponent
+
+
+def _spellings(sign: str, digits: str, exponent: int, implied: int) -> Iterator[str]:
+    """Ways to write 0.digits x 10^exponent in Fortran, the most readable first."""
+    count = len(digits)
+    if -8 <= exponent <= 0:
+        yield f"{sign}0.{'0' * -exponent}{digits}"
+        yield f"{sign}.{'0' * -exponent}{digits}"
+    elif 0 < exponent < count:
+        yield f"{sign}{digits[:exponent]}.{digits[exponent:]}"
+    elif count <= exponent <= 18:
+        yield f"{sign}{digits.ljust(exponent, '0')}."
+    yield f"{sign}{digits[0]}.{digits[1:]}E{exponent - 1}"
+    for letter in ("E", ""):  # a point elsewhere may save a digit of the exponent, a bare sign its letter
+        for point in (1, 0, count):
+            power = exponent - point
+            yield f"{sign}{digits[:point]}.{digits[point:]}{letter}{power if letter else f'{power:+d}'}"
+    if implied == 0:
+        if count <= exponent <= 18:
+            yield sign + digits.ljust(exponent, "0")
+        yield f"{sign}{digits}E{exponent - count}"
+        yield f"{sign}{digits}{exponent - count:+d}"
+
+
+def real_texts(values: NDArray[np.float64], width: int) -> tuple[list[str], int]:
+    """`real_text` of an array, shape (n,), and how many of them are not exact."""
+    texts = [repr(value) for value in values.tolist()]
+    inexact = 0
+    long = [i for i, text in enumerate(texts) if len(text) > width or "e" in text]
+    for i in long:
+        texts[i], exact = real_text(values[i], width)
+        inexact += not exact
+    return texts, inexact
