@@ -29,8 +29,8 @@ class Format:
 
 FORMATS = (
     Format("mcm", (".mcm",), "zrno.translators.mcm", "zrno.translators.mcm"),
-    Format("msh", (".msh",), "zrno.translators.gmsh"),
-    Format("geo", (".geo",), "zrno.translators.gmsh_geo"),
+    Format("msh", (".msh",), "zrno.translators.gmsh.read"),
+    Format("geo", (".geo",), "zrno.translators.gmsh.geo"),
     Format("lsdyna", (".k", ".key", ".dyn"), missing="LS-DYNA decks are not read yet"),
     Format("neu", (".neu",), missing="neutral files (.neu) are not read yet"),
     Format("pak", (".dat",), missing="PAK decks are not read yet"),

@@ -31,6 +31,8 @@ def _table(characters: bytes) -> NDArray[np.bool_]:
 
 _INTEGER_CHARACTERS = _table(b"0123456789+- ")
 _DIGITS_OR_BLANK = _table(b"0123456789 ")
+_SIGN = _table(b"+-")
+_DIGIT_OR_POINT = _table(b"0123456789.")
 _REAL_CHARACTERS = _table(b"0123456789+-.eE ")
 _D_TO_E = np.arange(256, dtype=np.uint8)
 _D_TO_E[[ord("d"), ord("D")]] = ord("E")
@@ -216,6 +218,13 @@ class Block:
             if blank.any():
                 columns = columns.copy()
                 columns[blank, 0] = ord("0")
+            # a sign behind a digit or a point is an exponent without its letter (1.5-3), which only Fortran reads
+            sign, before = _SIGN[columns[:, 1:]], _DIGIT_OR_POINT[columns[:, :-1]]
+            fortran = np.flatnonzero((sign & before).any(axis=1))
+            if len(fortran):
+                columns = columns.copy()
+                columns[fortran] = _BLANK
+                columns[fortran, 0] = ord("0")
             texts = np.ascontiguousarray(columns).view(f"S{f.end - f.start}")[:, 0]
             try:
                 numbers = texts.astype(dtype)
@@ -223,6 +232,7 @@ class Block:
                 pass
             else:
                 if np.isfinite(numbers).all():
+                    numbers[fortran] = [self._parse_one(f, start + i) for i in fortran.tolist()]
                     return numbers
         return np.array([self._parse_one(f, start + i) for i in range(len(columns))], dtype)
 

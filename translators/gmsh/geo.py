@@ -1,0 +1,85 @@
+"""gmsh geometry (.geo), meshed through the gmsh package."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from zrno.translators.gmsh.read import read as read_msh
+from zrno.translators.model import Model
+from zrno.translators.text import Fault, InputError, read_bytes
+
+_PLACE = re.compile(r"line (\d+)\s*:\s*(.*)")
+_SYSTEM_LIBRARIES = "libgl1 libglu1-mesa libxcursor1 libxft2 libxinerama1 libgomp1"
+
+
+def read(path: Path | str, *, numbers: Mapping[str, float] | None = None) -> Model:
+    """Mesh a geometry and read the mesh. numbers: as for `mesh_geo`."""
+    mesh = mesh_geo(path, numbers=numbers)
+    try:
+        model = read_msh(mesh)
+    finally:
+        mesh.unlink()
+        mesh.parent.rmdir()
+    model.title, model.format = Path(path).stem, "geo"
+    model.warnings = [warning.replace(str(mesh), str(path)) for warning in model.warnings]
+    return model
+
+
+def mesh_geo(path: Path | str, *, numbers: Mapping[str, float] | None = None) -> Path:
+    """Mesh a geometry in its highest dimension; returns a temporary .msh, alone in a folder that the caller removes.
+
+    numbers: values of the script's DefineConstant parameters by name, as gmsh's option -setnumber.
+    Raises InputError with gmsh's messages; ImportError, saying what to install, where gmsh cannot be loaded.
+    """
+    read_bytes(path)
+    gmsh = _gmsh()
+    options = [word for name, value in (numbers or {}).items() for word in ("-setnumber", name, repr(float(value)))]
+    gmsh.initialize(["gmsh", *options], readConfigFiles=False, interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.logger.start()
+        try:
+            gmsh.open(str(path))
+            if not len(gmsh.model.mesh.getNodes()[0]):
+                gmsh.model.mesh.generate(gmsh.model.getDimension())
+        except Exception as error:  # gmsh raises nothing narrower
+            raise InputError(_faults(str(path), [*gmsh.logger.get(), f"Error   : {error}"])) from error
+        if not len(gmsh.model.mesh.getNodes()[0]):
+            raise InputError(
+                [Fault(str(path), 1, 1, "the geometry makes no mesh", expected="points, lines, surfaces, volumes")]
+            )
+        target = Path(tempfile.mkdtemp(prefix="zrno-")) / "mesh.msh"
+        gmsh.option.setNumber("Mesh.MshFileVersion", 4.1)
+        gmsh.option.setNumber("Mesh.Binary", 1)
+        gmsh.write(str(target))
+    finally:
+        gmsh.finalize()
+    return target
+
+
+def _gmsh() -> Any:
+    try:
+        import gmsh
+    except (ImportError, OSError) as error:
+        raise ImportError(
+            f"the gmsh package cannot be loaded ({error}); its libraries: apt-get install -y {_SYSTEM_LIBRARIES}"
+        ) from error
+    return gmsh
+
+
+def _faults(path: str, messages: list[str]) -> list[Fault]:
+    """gmsh's errors as faults; those with a line first said."""
+    faults: dict[str, Fault] = {}
+    for message in messages:
+        kind, _, text = message.partition(":")
+        if kind.strip() != "Error":
+            continue
+        match = _PLACE.search(text)
+        said = match[2] if match else text.strip()
+        faults.setdefault(said, Fault(path, int(match[1]) if match else 1, 1, f"gmsh: {said}"))
+    placed = [fault for fault in faults.values() if fault.line > 1]
+    return (placed or list(faults.values()))[:20]
