@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -24,3 +25,10 @@ def replacing(target: Path | str) -> Iterator[Path]:
         temporary.replace(target)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def remove_left_overs(directory: Path | str) -> None:
+    """Remove the temporary files of processes that were killed while they wrote into a folder."""
+    for path in Path(directory).glob(".*"):
+        if re.match(r"\.\d+\.", path.name):
+            path.unlink()

@@ -84,7 +84,11 @@ def _write(path: Path, pieces: Sequence[bytes | tuple[Array, str]]) -> None:
         file = out.fileno()
 
         def put(data: Array | bytes, dtype: str, at: int) -> None:
-            left = memoryview(data if isinstance(data, bytes) else data.astype(dtype, order="C").reshape(-1).view("u1"))
+            left = (
+                memoryview(data)
+                if isinstance(data, bytes)
+                else data.astype(dtype, order="C").reshape(-1).view("u1").data
+            )
             while left:
                 written = os.pwrite(file, left, at)
                 left, at = left[written:], at + written

@@ -1,0 +1,165 @@
+"""Series of frames that a visualiser opens at any moment: numbered files and the `.pvd` that lists them with times."""
+
+from __future__ import annotations
+
+import math
+import re
+import unicodedata
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+from numpy.typing import NDArray
+
+from zrno.pipelines.observing import Solver
+from zrno.pipelines.replacing import remove_left_overs
+from zrno.pipelines.vtk import Format, Precision, write_points
+from zrno.solvers.frame import Frame
+from zrno.translators.text import write_atomically
+
+FOLDER = "vtk"
+Rows = slice | NDArray[Any]
+
+
+class Series:
+    """Frames `vtk/<name>_00000.vtp` .. and `<name>.pvd` of one result folder; goes on where an earlier run stopped.
+
+    The list is replaced after the frame stands and before a frame is deleted: it never names a file that is not there.
+    """
+
+    def __init__(
+        self, directory: Path | str, name: str, *, format: Format = "vtp", precision: Precision = "single"
+    ) -> None:
+        self.directory = Path(directory)
+        self.name = name
+        self.format = format
+        self.precision = precision
+        self._frames = read_list(self.path) if self.path.exists() else []
+
+    @property
+    def path(self) -> Path:
+        """The `.pvd` file."""
+        return self.directory / f"{self.name}.pvd"
+
+    @property
+    def times(self) -> list[float]:
+        """Times of the frames, ascending."""
+        return [time for time, _ in self._frames]
+
+    def write(self, frame: Frame, rows: Rows = slice(None)) -> None:
+        """Append a frame. rows: the particles that belong to this series (a slice, mask or indices)."""
+        file = f"{FOLDER}/{self.name}_{len(self._frames):05d}.{self.format}"
+        (self.directory / FOLDER).mkdir(parents=True, exist_ok=True)
+        arrays = {name: values[rows] for name, values in frame.particles.items()}
+        points = arrays.pop("position")
+        write_points(self.directory / file, points, arrays, frame.time, format=self.format, precision=self.precision)
+        self._frames.append((frame.time, file))
+        self._write_list()
+
+    def truncate(self, time: float) -> None:
+        """Drop the frames later than a time: a resumed run writes them again."""
+        dropped = [file for t, file in self._frames if t > time]
+        if not dropped:
+            return
+        self._frames = [(t, file) for t, file in self._frames if t <= time]
+        if self._frames:
+            self._write_list()
+        else:
+            self.path.unlink()
+        for file in dropped:
+            (self.directory / file).unlink(missing_ok=True)
+
+    def _write_list(self) -> None:
+        lines = [f'<DataSet timestep="{time!r}" part="0" file="{file}"/>\n' for time, file in self._frames]
+        text = (
+            '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n<Collection>\n'
+            f"{''.join(lines)}</Collection>\n</VTKFile>\n"
+        )
+        write_atomically(self.path, [text.encode()])
+
+
+def read_list(path: Path) -> list[tuple[float, str]]:
+    """Time and file (relative to the list) of each frame of a `.pvd`. Raises ValueError when it is not one."""
+    try:
+        items = ElementTree.parse(path).iter("DataSet")
+        return [(float(item.attrib["timestep"]), item.attrib["file"]) for item in items]
+    except (ElementTree.ParseError, KeyError, ValueError) as error:
+        raise ValueError(f"{path} is not a list of frames (.pvd): {error}") from error
+
+
+def slug(text: str) -> str:
+    """A material's name as part of a file name: ASCII letters, digits and dashes, at most 40."""
+    plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
+    return re.sub(r"[^A-Za-z0-9]+", "-", plain).strip("-")[:40].strip("-").lower()
+
+
+def series_name(material: int, name: str) -> str:
+    """`mat01_aluminium`; `mat01` where the name has no letter that a file may carry."""
+    said = slug(name)
+    return f"mat{material:02d}_{said}" if said else f"mat{material:02d}"
+
+
+class ResultSeries:
+    """Observer: a series for each material that has particles, and `particles` of all; all have the same times.
+
+    materials: name by material number, of all materials of the deck; interval: simulated time between frames; resume:
+    go on with the frames up to the solver's time, else begin anew.
+    """
+
+    def __init__(
+        self,
+        directory: Path | str,
+        materials: Mapping[int, str],
+        *,
+        interval: float | None,
+        format: Format = "vtp",
+        precision: Precision = "single",
+        resume: bool = False,
+    ) -> None:
+        self.interval = interval
+        self._materials = materials
+        self._resume = resume
+        self._directory = Path(directory)
+        self._options: dict[str, Any] = {"format": format, "precision": precision}
+        self._series: list[tuple[Series, Rows]] = []
+
+    def start(self, solver: Solver) -> None:
+        """The first frame; after a resume only where there is none, so that times are those of an unbroken run."""
+        remove_left_overs(self._directory / FOLDER)
+        frame = solver.frame()
+        self._series = [
+            (Series(self._directory, name, **self._options), rows)
+            for name, rows in _rows_of(frame.particles["material"], self._materials).items()
+        ]
+        for series, _ in self._series:
+            series.truncate(solver.time if self._resume else -math.inf)
+        if not all(series.times for series, _ in self._series):
+            self._write(frame)
+
+    def observe(self, solver: Solver) -> None:
+        """A frame, unless this time has one."""
+        if any(solver.time not in series.times[-1:] for series, _ in self._series):
+            self._write(solver.frame())
+
+    def finish(self, solver: Solver) -> None:
+        """The last frame, wherever the run ended."""
+        self.observe(solver)
+
+    def _write(self, frame: Frame) -> None:
+        for series, rows in self._series:
+            if frame.time not in series.times[-1:]:
+                series.write(frame, rows)
+
+
+def _rows_of(material: NDArray[Any], names: Mapping[int, str]) -> dict[str, Rows]:
+    """The particles of each series. material: material number of each particle, shape (n,)."""
+    rows: dict[str, Rows] = {}
+    for number, name in sorted(names.items()):
+        found = np.flatnonzero(material == number)
+        if len(found):
+            together = int(found[-1]) - int(found[0]) + 1 == len(found)
+            rows[series_name(number, name)] = slice(int(found[0]), int(found[-1]) + 1) if together else found
+    rows["particles"] = slice(None)
+    return rows
