@@ -1,55 +1,26 @@
-"""Labels and units of the quantities that frames and histories hold: the one place for both."""
+"""Particle arrays and history columns as a person reads them: labels, units, components, magnitudes."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
-_LABELS = {  # name of an array or a column: its label and the kind of quantity
-    "id": ("particle number", ""),
-    "material": ("material", ""),
-    "velocity": ("velocity", "velocity"),
-    "density": ("density", "density"),
-    "mass": ("mass", "mass"),
-    "radius": ("radius", "length"),
-    "pressure": ("pressure", "stress"),
-    "stress": ("stress", "stress"),
-    "von_mises": ("von Mises stress", "stress"),
-    "plastic_strain": ("plastic strain", ""),
-    "displacement": ("displacement", "length"),
-    "time": ("time", "time"),
-    "dt": ("time step", "time"),
-    "kinetic": ("kinetic energy", "energy"),
-    "internal": ("internal energy", "energy"),
-    "dissipated": ("dissipated energy", "energy"),
-    "external_work": ("external work", "energy"),
-    "momentum": ("momentum", "momentum"),
-    "contact_force": ("contact force", "force"),
-    "active": ("active particles", ""),
-}
+import numpy as np
+from numpy.typing import NDArray
 
-# Consistent systems: length, time, mass; the powers of ten that take each to m, s, kg.
-_SYSTEMS = {
-    "mm-ms-g": ("mm", "ms", "g"),
-    "cm-us-g": ("cm", "µs", "g"),
-    "m-s-kg": ("m", "s", "kg"),
-    "mm-s-t": ("mm", "s", "t"),
+from zrno.pipelines.units import SYSTEMS
+
+_LABELS = {
+    "id": "particle number",
+    "von_mises": "von Mises stress",
+    "dt": "time step",
+    "kinetic": "kinetic energy",
+    "internal": "internal energy",
+    "dissipated": "dissipated energy",
+    "active": "active particles",
 }
-_POWER = {"mm": -3, "cm": -2, "m": 0, "ms": -3, "µs": -6, "s": 0, "g": -3, "kg": 0, "t": 3}
-_DERIVED = {  # kind: exponents of length, time, mass; name of the SI unit where it has one
-    "length": (1, 0, 0, ""),
-    "time": (0, 1, 0, ""),
-    "mass": (0, 0, 1, ""),
-    "velocity": (1, -1, 0, ""),
-    "density": (-3, 0, 1, ""),
-    "stress": (-1, -2, 1, "Pa"),
-    "force": (1, -2, 1, "N"),
-    "energy": (2, -2, 1, "J"),
-    "momentum": (1, -1, 1, ""),
-}
-_PREFIX = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
-_SUPERSCRIPT = {1: "", 2: "²", 3: "³"}
-_AXES = ("x", "y", "z", "xx", "yy", "zz", "xy", "yz", "zx")
-SYSTEMS = tuple(_SYSTEMS)
+_AXES = {3: ("x", "y", "z"), 6: ("xx", "yy", "zz", "xy", "yz", "zx")}
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,32 +34,49 @@ class Quantity:
         return f"{self.label} [{self.unit}]" if self.unit else self.label
 
 
-def unit(kind: str, system: str | None) -> str:
-    """The unit of a kind of quantity ("stress") in a consistent system ("mm-ms-g" -> "MPa"); "" when not known."""
-    if not kind or system not in _SYSTEMS:
-        return ""
-    *exponents, name = _DERIVED[kind]
-    symbols = _SYSTEMS[system]
-    power = sum(int(n) * _POWER[symbol] for n, symbol in zip(exponents, symbols, strict=True))
-    if name and power in _PREFIX:
-        return _PREFIX[power] + name
-    if name == "Pa" and power == 11:
-        return "Mbar"
-    length, time, mass = symbols
-    ordered = list(zip((mass, length, time), (exponents[2], exponents[0], exponents[1]), strict=True))
-    above = " ".join(symbol + _SUPERSCRIPT[int(n)] for symbol, n in ordered if int(n) > 0)
-    below = " ".join(symbol + _SUPERSCRIPT[-int(n)] for symbol, n in ordered if int(n) < 0)
-    return f"{above}/{below}" if below else above
-
-
 def quantity(name: str, system: str | None = None) -> Quantity:
-    """Label and unit of an array, a component of one (`velocity_x`) or a column; unknown names label themselves."""
+    """Label and unit of an array, a component of one (`velocity_x`) or a column.
+
+    system: a consistent system of units ("mm-ms-g"), None when it is not known; a name that is not known labels itself.
+    """
+    units = SYSTEMS[system].labels() if system in SYSTEMS else {}
     base, _, axis = name.rpartition("_")
-    if name in _LABELS:
-        label, kind = _LABELS[name]
-    elif axis in _AXES and base in _LABELS:
-        label, kind = _LABELS[base]
-        label = f"{label} {axis}"
-    else:
-        label, kind = name.replace("_", " "), ""
-    return Quantity(label, unit(kind, system))
+    component = axis in (*_AXES[3], *_AXES[6])
+    label = _LABELS.get(name, name.replace("_", " "))
+    unit = units.get(name) or (units.get(base, "") if component else "")
+    for plain, printed in (("^2", "²"), ("^3", "³"), ("us", "µs")):
+        unit = unit.replace(plain, printed)
+    return Quantity(label, unit)
+
+
+def field_names(arrays: Mapping[str, NDArray[Any]]) -> list[str]:
+    """What `field` accepts of a frame: arrays, and components of those that have them (`velocity_x`, `stress_xx`)."""
+    names = []
+    for name, values in arrays.items():
+        names.append(name)
+        names += [f"{name}_{axis}" for axis in _AXES.get(values.shape[1], ())] if values.ndim == 2 else []
+    return names
+
+
+def field(arrays: Mapping[str, NDArray[Any]], name: str) -> NDArray[Any]:
+    """An array, a component of one, or the magnitude of a vector or tensor (Frobenius); shape (n,).
+
+    Raises ValueError with the names there are when the frame has no such field.
+    """
+    values = arrays.get(name)
+    if values is None:
+        base, _, axis = name.rpartition("_")
+        parent = arrays.get(base)
+        axes = _AXES.get(parent.shape[1], ()) if parent is not None and parent.ndim == 2 else ()
+        if parent is None or axis not in axes:
+            raise ValueError(unknown("field", name, field_names(arrays)))
+        return parent[:, axes.index(axis)]
+    if values.ndim == 1:
+        return values
+    weights = np.array([1, 1, 1, 2, 2, 2]) if values.shape[1] == 6 else np.ones(values.shape[1])
+    return np.sqrt((values.astype(float) ** 2) @ weights)
+
+
+def unknown(what: str, name: str, names: Iterable[str]) -> str:
+    """The message for a name that is not there."""
+    return f"no {what} {name}; there are: {', '.join(names)}"

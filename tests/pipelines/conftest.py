@@ -20,7 +20,7 @@ class FakeSolver:
         self.dt = dt
         side = max(1, round(count ** (1 / 3)))
         grid = np.stack(np.meshgrid(*[np.arange(side)] * 3, indexing="ij"), -1).reshape(-1, 3)[:count].astype(float)
-        self.start = np.concatenate((grid, grid + (side + 1.0, 0, 0)))
+        self.start = np.concatenate((grid, grid + np.array([side + 1.0, 0, 0])))
         self.material = np.repeat([1, 2], len(grid))
 
     @property

@@ -64,5 +64,5 @@ def test_a_column_that_the_solver_does_not_give_is_nan(tmp_path: Path, solver: A
 def test_a_file_that_is_no_history_is_named(tmp_path: Path, text: str) -> None:
     path = tmp_path / "history.csv"
     path.write_text(text)
-    with pytest.raises(ValueError, match="history.csv"):
+    with pytest.raises(ValueError, match=r"history\.csv"):
         read_history(path)
