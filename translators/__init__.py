@@ -11,17 +11,30 @@ if __name__ != "zrno.translators":
     )
 
 if TYPE_CHECKING:
+    from zrno.translators.convert import to_particles
     from zrno.translators.formats import read, write
     from zrno.translators.model import Model
     from zrno.translators.report import Report
+    from zrno.translators.settings import help_settings
+    from zrno.translators.settings import load as load_settings
     from zrno.translators.text import InputError
 
-__all__ = ["InputError", "Model", "Report", "read", "write"]
+__all__ = ["InputError", "Model", "Report", "help_settings", "load_settings", "read", "to_particles", "write"]
 
-_HOME = {"read": "formats", "write": "formats", "Model": "model", "Report": "report", "InputError": "text"}
+_HOME = {
+    "InputError": ("text", "InputError"),
+    "Model": ("model", "Model"),
+    "Report": ("report", "Report"),
+    "help_settings": ("settings", "help_settings"),
+    "load_settings": ("settings", "load"),
+    "read": ("formats", "read"),
+    "to_particles": ("convert", "to_particles"),
+    "write": ("formats", "write"),
+}
 
 
 def __getattr__(name: str) -> Any:
     if name not in _HOME:
         raise AttributeError(f"module {__name__} has no attribute {name}")
-    return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+    module, attribute = _HOME[name]
+    return getattr(import_module(f"{__name__}.{module}"), attribute)

@@ -25,6 +25,10 @@ def read(path: Path | str, *, numbers: Mapping[str, float] | None = None) -> Mod
         mesh.unlink()
         mesh.parent.rmdir()
     model.title, model.format = Path(path).stem, "geo"
+    for part in model.parts.values():
+        part.source = None  # the mesh's lines are gone
+    for nodes in model.node_sets:
+        nodes.source = None
     model.warnings = [warning.replace(str(mesh), str(path)) for warning in model.warnings]
     return model
 

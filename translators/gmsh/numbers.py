@@ -49,8 +49,8 @@ class Numbers:
             return rows[:, 0].astype(np.int64), np.ascontiguousarray(rows[:, 1:])
         raw = self._take(28 * count, "u1").tobytes()
         kind: np.dtype[Any] = np.dtype([("tag", self.binary + "i4"), ("x", self.binary + "f8", (3,))])
-        rows: NDArray[Any] = np.frombuffer(raw, kind)
-        return rows["tag"].astype(np.int64), rows["x"].astype(np.float64)
+        records: NDArray[Any] = np.frombuffer(raw, kind)
+        return records["tag"].astype(np.int64), records["x"].astype(np.float64)
 
     def ahead(self, count: int) -> NDArray[np.float64]:
         """The next numbers of a text section, which stay unread."""

@@ -11,8 +11,9 @@ import numpy as np
 
 from zrno.translators.mcm import cards as layouts
 from zrno.translators.model import Floats, Ints, Material, Model, ParticleControl, Particles
+from zrno.translators.real_text import real_text, real_texts
 from zrno.translators.report import Report
-from zrno.translators.text import Layout, real_text, real_texts, write_atomically
+from zrno.translators.text import Layout, write_atomically
 
 _CHUNK = 100_000  # particles formatted at a time
 _LONGEST_NAME = 12  # of a deck on MCM's command line, without the extension
