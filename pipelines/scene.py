@@ -1,0 +1,234 @@
+"""The scene file: which decks run, how they are made, what is written and drawn. Every fault with its place."""
+
+from __future__ import annotations
+
+import types
+import typing
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
+from pydantic_core import ErrorDetails, PydanticCustomError
+
+from zrno.pipelines import marked
+from zrno.pipelines.marked import Location, Marked, Place, did_you_mean, dotted
+from zrno.pipelines.units import SYSTEMS, Units
+from zrno.translators.text import MAX_FAULTS, InputError
+
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+
+
+def _as_list(value: Any) -> Any:
+    return value if isinstance(value, list) else [value]
+
+
+def _wrong(message: str, expected: str) -> PydanticCustomError:
+    return PydanticCustomError("scene", "{what}", {"what": message, "expected": expected})
+
+
+class Section(BaseModel):
+    """A part of the scene: unknown keys are faults."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Mesh(Section):
+    """A mesh that is made into a deck before the run, by the rules of `zrno convert`.
+
+    settings: files or mappings in place, one or a list of them; the later say over the earlier.
+    numbers: values for the parameters of a .geo script.
+    """
+
+    source: str
+    target: str
+    settings: Annotated[list[str | dict[str, Any]], BeforeValidator(_as_list)] = []
+    particles: Literal["solids", "shells", "nodes"] | None = None
+    spacing: Positive | None = None
+    part: Annotated[list[str | int], BeforeValidator(_as_list)] = []
+    dialect: Literal["2.07", "2019-08", "2019-10"] | None = None
+    numbers: dict[str, float] = {}
+
+
+class Friction(Section):
+    """Coulomb friction: coefficients at rest and in motion."""
+
+    kinetic: NotNegative
+    static: NotNegative
+
+    @field_validator("static")
+    @classmethod
+    def _at_least_kinetic(cls, value: float, info: ValidationInfo) -> float:
+        kinetic = info.data.get("kinetic", 0.0)
+        if value < kinetic:
+            raise _wrong("must be >= kinetic", f"at least {kinetic:g}")
+        return value
+
+
+class Coupling(Section):
+    """How grains and structure meet. surface: the wetted elements, all or a part's name."""
+
+    surface: str = "all"
+    contact: Literal["kernel", "potential", "pinball", "face"] = "kernel"
+    friction: Friction | None = None
+
+
+class Output(Section):
+    """Frames. every: simulated time between them (the deck's interval where it is left out)."""
+
+    every: Positive | None = None
+    format: Literal["vtp", "vtk", "vtkhdf"] = "vtp"
+
+
+class Picture(Section):
+    """A picture to draw after the run."""
+
+    field: str = "von_mises"
+    time: float | str = "last"
+    view: str = "iso"
+    size: tuple[Annotated[int, Field(gt=0)], Annotated[int, Field(gt=0)]] = (1280, 720)
+
+    @field_validator("time")
+    @classmethod
+    def _time_or_word(cls, value: float | str) -> float | str:
+        if isinstance(value, str) and value not in ("last", "all"):
+            raise _wrong("is no time", "a time, last or all")
+        return value
+
+
+class Checkpoint(Section):
+    """Checkpoints. every: simulated time between them."""
+
+    every: Positive
+
+
+class Study(Section):
+    """Speed against error: what varies, and what the answers are measured against."""
+
+    quantity: str
+    vary: dict[str, Annotated[list[float | str], Field(min_length=1)]]
+    tolerance: Positive
+    reference: str | None = None
+    analytic: str | None = None
+
+    @field_validator("analytic")
+    @classmethod
+    def _one_of_two(cls, value: str | None, info: ValidationInfo) -> str | None:
+        if value is not None and info.data.get("reference") is not None:
+            raise _wrong("stands beside study.reference", "one of the two")
+        return value
+
+
+class Scene(Section):
+    """A scene. decks: one .mcm (particles), one .dat (finite elements), or both (coupled)."""
+
+    decks: Annotated[list[str], Field(min_length=1, max_length=2)]
+    title: str = ""
+    meshes: list[Mesh] = []
+    units: Literal["mm-ms-g", "cm-us-g", "m-s-kg", "mm-s-t"] | None = None
+    coupling: Coupling | None = None
+    output: Output = Output()
+    render: list[Picture] = []
+    checkpoint: Checkpoint | None = None
+    study: Study | None = None
+
+    @field_validator("decks")
+    @classmethod
+    def _one_of_a_kind(cls, value: list[str]) -> list[str]:
+        kinds = [Path(deck).suffix.lower() for deck in value]
+        if set(kinds) - {".mcm", ".dat"} or len(set(kinds)) < len(kinds):
+            raise _wrong(f"{', '.join(value)} do not make a run", "one .mcm, one .dat, or one of each")
+        return value
+
+    @property
+    def system(self) -> Units | None:
+        """The labels of the scene's units; None where it names none."""
+        return None if self.units is None else SYSTEMS[self.units]
+
+
+def load(path: Path | str, overrides: Sequence[tuple[Location, Any, Place]] = ()) -> Scene:
+    """Read a scene file. overrides: (location, value, place) that replace what the file says.
+
+    Raises InputError with every fault, up to 20, also for files that the scene names and that are not there.
+    """
+    document = marked.load(path)
+    if not isinstance(document.data, dict):
+        document.fault((), "a scene is a mapping of keys", "title, decks, ...")
+        document.faults.stop()
+    for location, value, place in overrides:
+        document.override(location, value, place)
+    scene = None
+    try:
+        scene = Scene.model_validate(document.data)
+    except ValidationError as error:
+        for detail in error.errors():
+            _note(document, detail)
+    if scene is not None:
+        _check_files(document, scene, Path(path).parent)
+    if document.faults.found:
+        raise InputError(sorted(set(document.faults.found))[:MAX_FAULTS])
+    assert scene is not None
+    return scene
+
+
+def _note(document: Marked, detail: ErrorDetails) -> None:
+    """One of pydantic's errors as a fault in the file."""
+    loc = detail["loc"]
+    location = loc if detail["type"] == "missing" else _in_file(document, loc)
+    name = dotted(location)
+    match detail["type"]:
+        case "extra_forbidden":
+            expected = did_you_mean(str(location[-1]), _keys_at(Scene, location[:-1]))
+            document.fault(location, f"unknown key {name}", expected, key=True)
+        case "missing":
+            document.fault(location[:-1], f"{name} is missing", f"the key {location[-1]}")
+        case "scene":
+            context = detail["ctx"]
+            document.fault(location, f"{name}: {context['what']}", context["expected"])
+        case _:
+            expected = detail["msg"].removeprefix("Input should be ").removeprefix("Value should be ")
+            expected = "a value " + expected if expected.startswith(("greater", "less")) else expected
+            document.fault(location, f"{name} has a wrong value", expected[:1].lower() + expected[1:])
+
+
+def _in_file(document: Marked, loc: Location) -> Location:
+    """pydantic's location, cut where the file has no such place: behind it come the names of a union's members."""
+    while loc and loc not in document.values:
+        loc = loc[:-1]
+    return loc
+
+
+def _keys_at(section: Any, location: Location) -> list[str]:
+    """The keys that a section of the scene knows."""
+    for step in location:
+        if isinstance(step, str) and _is_section(section):
+            section = section.model_fields[step].annotation
+        while not _is_section(section):
+            inner = [a for a in typing.get_args(section) if a is not types.NoneType]
+            if not inner:
+                return []
+            section = inner[0]
+    return list(section.model_fields)
+
+
+def _is_section(annotation: Any) -> bool:
+    return isinstance(annotation, type) and issubclass(annotation, Section)
+
+
+def _check_files(document: Marked, scene: Scene, folder: Path) -> None:
+    """Files that the scene names: sources, settings and references are there; decks are there or made."""
+    named: list[tuple[Location, str]] = []
+    for i, mesh in enumerate(scene.meshes):
+        named.append((("meshes", i, "source"), mesh.source))
+        for k, settings in enumerate(mesh.settings):
+            if isinstance(settings, str):
+                named.append((("meshes", i, "settings", k), settings))
+    made = {mesh.target for mesh in scene.meshes}
+    named += [(("decks", i), deck) for i, deck in enumerate(scene.decks) if deck not in made]
+    if scene.study is not None and scene.study.reference is not None:
+        named.append((("study", "reference"), scene.study.reference))
+    for location, name in named:
+        if not (folder / name).is_file():
+            expected = "a file beside the scene" + (", or a target of meshes" if location[0] == "decks" else "")
+            document.fault(location, f"{dotted(location)}: no such file", expected)

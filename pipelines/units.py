@@ -1,0 +1,42 @@
+"""Consistent systems of units by name: their labels, and gravity in them. The solvers know none of this."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Units:
+    """Labels of a consistent system, and standard gravity in it."""
+
+    length: str
+    time: str
+    mass: str
+    stress: str
+    force: str
+    energy: str
+    gravity: float
+
+    def labels(self) -> dict[str, str]:
+        """The unit of every quantity of the result folder that has one, by its name in frames and in the history."""
+        speed = f"{self.length}/{self.time}"
+        momentum = f"{self.mass} {speed}"
+        return {
+            **dict.fromkeys(("time", "dt"), self.time),
+            **dict.fromkeys(("position", "displacement", "radius"), self.length),
+            "velocity": speed,
+            "density": f"{self.mass}/{self.length}^3",
+            "mass": self.mass,
+            **dict.fromkeys(("pressure", "stress", "von_mises"), self.stress),
+            **dict.fromkeys(("kinetic", "internal", "dissipated", "external_work"), self.energy),
+            **{f"momentum_{axis}": momentum for axis in "xyz"},
+            **{f"contact_force_{axis}": self.force for axis in "xyz"},
+        }
+
+
+SYSTEMS = {
+    "mm-ms-g": Units("mm", "ms", "g", "MPa", "N", "mJ", 9.80665e-3),
+    "cm-us-g": Units("cm", "us", "g", "Mbar", "Mbar cm^2", "Mbar cm^3", 9.80665e-10),
+    "m-s-kg": Units("m", "s", "kg", "Pa", "N", "J", 9.80665),
+    "mm-s-t": Units("mm", "s", "t", "MPa", "N", "mJ", 9806.65),
+}
