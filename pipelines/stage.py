@@ -1,0 +1,142 @@
+"""The picture of a cloud of particles: spheres of true radius, colour bar, title and time; drawn off screen."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from zrno.pipelines.view import Axes, Extent, aim
+
+FINE = 200_000  # particles up to which spheres are drawn twice as fine and averaged, so that their edges are smooth
+_INK = "#222222"
+_HEAD = 0.085  # height of the line with title and time, as a fraction of the picture
+_BAR_RIGHT = 0.13  # width of the colour bar with its numbers, beside the scene
+_BAR_BELOW = 0.17  # height of the colour bar with its numbers, below a scene that is wide
+_MARGIN = 0.02
+
+
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """Colour scale. ticks: ascending values with a label each, the ends among them; cmap: a matplotlib name."""
+
+    ticks: list[float]
+    cmap: str
+    label: str
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """The values of the first and the last colour."""
+        return self.ticks[0], self.ticks[-1]
+
+
+def scale_for(low: float, high: float, label: str) -> Scale:
+    """A scale with round ticks that holds low..high; about zero, with two hues, where both signs matter."""
+    if not (math.isfinite(low) and math.isfinite(high)):
+        low, high = 0.0, 1.0
+    signed = low < 0 < high and min(-low, high) > 0.1 * max(-low, high)
+    if signed:
+        high = max(-low, high)
+        low = -high
+    elif low > 0 and low < 0.5 * high:
+        low = 0.0
+    spread = high - low
+    if spread <= 1e-6 * max(abs(low), abs(high)):  # one value, but for round-off
+        spread = abs(high) or 1.0
+        low, high = (0.0, spread) if low >= 0 else (-spread, 0.0)
+    raw = spread / 5
+    power = 10.0 ** math.floor(math.log10(raw))
+    step = power * next(f for f in (1, 2, 2.5, 5, 10) if f * power >= 0.999 * raw)
+    first, last = math.floor(low / step + 1e-6), math.ceil(high / step - 1e-6)
+    return Scale([i * step for i in range(first, last + 1)], "coolwarm" if signed else "viridis", label)
+
+
+class Stage:
+    """Draws frames alike: one camera, one colour scale. size: pixels; flat: without light, for scenes in a plane."""
+
+    def __init__(
+        self, size: tuple[int, int], axes: Axes, box: Extent, scale: Scale, *, title: str, flat: bool, fine: bool
+    ) -> None:
+        import pyvista
+        from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLSphereMapper
+
+        self._size = size
+        self._scale = scale
+        self._title = title
+        aspect = size[0] / size[1]
+        self._wide = bool(box.size[0] > 0.9 * aspect * box.size[1])
+        self._finer = 2 if fine else 1
+        self._plotter = pyvista.Plotter(off_screen=True, window_size=[self._finer * n for n in size], lighting="none")
+        self._plotter.background_color = "white"
+        headlight = pyvista.Light(light_type="headlight")
+        self._plotter.add_light(headlight)
+
+        # Spheres in a fragment shader: exact outlines and depth from one triangle each; a million in seconds.
+        self._mapper = vtkOpenGLSphereMapper()
+        self._mapper.SetScaleArray("radius")
+        self._mapper.SetScalarModeToUsePointFieldData()
+        self._mapper.SelectColorArray("shown")
+        table = pyvista.LookupTable(scale.cmap, n_values=1024)
+        table.scalar_range = scale.limits
+        self._mapper.SetLookupTable(table)
+        self._mapper.SetScalarRange(*scale.limits)
+        actor = pyvista.Actor()
+        actor.SetMapper(self._mapper)
+        actor.prop.ambient, actor.prop.diffuse = (1.0, 0.0) if flat else (0.35, 0.75)
+        self._plotter.renderer.AddActor(actor)
+        right, bottom = (_MARGIN, _BAR_BELOW) if self._wide else (_BAR_RIGHT, _MARGIN)
+        free = (_MARGIN, bottom + _MARGIN, 1 - right - _MARGIN, 1 - _HEAD - _MARGIN)
+        aim(self._plotter.camera, axes, box, size, free)
+
+    def draw(self, points: NDArray[Any], radius: NDArray[Any], values: NDArray[Any], caption: str) -> NDArray[np.uint8]:
+        """The picture, shape (height, width, 3). points: (n, 3); radius, values: (n,); caption: the time."""
+        import pyvista
+
+        cloud = pyvista.PolyData(np.asarray(points, np.float32))
+        cloud.point_data["radius"] = np.asarray(radius, np.float32)
+        cloud.point_data["shown"] = np.asarray(values, np.float32)
+        self._mapper.SetInputData(cloud)
+        self._plotter.render()
+        image = np.asarray(self._plotter.screenshot(return_img=True))
+        k = self._finer
+        if k > 1:
+            width, height = self._size
+            image = image.reshape(height, k, width, k, 3).mean(axis=(1, 3)).round().astype(np.uint8)
+        return self._annotated(image, caption)
+
+    def close(self) -> None:
+        """Free the window."""
+        self._plotter.close()
+
+    def _annotated(self, image: NDArray[np.uint8], caption: str) -> NDArray[np.uint8]:
+        """The image with title, time and colour bar."""
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.cm import ScalarMappable
+        from matplotlib.colors import Normalize
+        from matplotlib.figure import Figure
+
+        dpi = 100.0
+        width, height = self._size
+        figure = Figure(figsize=(width / dpi, height / dpi), dpi=dpi, facecolor="white")
+        canvas = FigureCanvasAgg(figure)
+        figure.figimage(image, origin="upper", zorder=-1)
+        letter = 0.72 * max(11.0, min(height / 34, width / 52))  # points of 1/72 inch at 100 dots an inch
+        line = 1 - _HEAD / 2
+        figure.text(0.025, line, self._title, fontsize=1.15 * letter, color=_INK, va="center")
+        figure.text(0.975, line, caption, fontsize=1.15 * letter, color=_INK, va="center", ha="right")
+        mappable = ScalarMappable(Normalize(*self._scale.limits), self._scale.cmap)
+        place = (0.25, 0.115, 0.5, 0.028) if self._wide else (1 - _BAR_RIGHT + 0.03, 0.14, 0.018, 0.64)
+        orientation = "horizontal" if self._wide else "vertical"
+        bar = figure.colorbar(mappable, cax=figure.add_axes(place), orientation=orientation, ticks=self._scale.ticks)
+        bar.ax.tick_params(labelsize=letter, colors=_INK, width=0.8)
+        bar.ax.ticklabel_format(axis="x" if self._wide else "y", useMathText=True)
+        bar.outline.set_linewidth(0.6)
+        if self._wide:
+            bar.set_label(self._scale.label, fontsize=letter, color=_INK)
+        else:
+            figure.text(0.975, 0.86, self._scale.label, fontsize=letter, color=_INK, ha="right", va="center")
+        canvas.draw()
+        return np.asarray(canvas.buffer_rgba())[..., :3].copy()
