@@ -70,11 +70,11 @@ def field(arrays: Mapping[str, NDArray[Any]], name: str) -> NDArray[Any]:
         axes = _AXES.get(parent.shape[1], ()) if parent is not None and parent.ndim == 2 else ()
         if parent is None or axis not in axes:
             raise ValueError(unknown("field", name, field_names(arrays)))
-        return parent[:, axes.index(axis)]
+        values = parent[:, axes.index(axis)]
     if values.ndim == 1:
         return values
     weights = np.array([1, 1, 1, 2, 2, 2]) if values.shape[1] == 6 else np.ones(values.shape[1])
-    return np.sqrt((values.astype(float) ** 2) @ weights)
+    return np.asarray(np.sqrt((values.astype(float) ** 2) @ weights))
 
 
 def unknown(what: str, name: str, names: Iterable[str]) -> str:

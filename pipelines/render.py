@@ -15,7 +15,7 @@ from zrno.pipelines.quantities import field as field_of
 from zrno.pipelines.quantities import quantity
 from zrno.pipelines.replacing import replacing
 from zrno.pipelines.stage import FINE, Stage, scale_for
-from zrno.pipelines.view import Extent, axes, extent
+from zrno.pipelines.view import Extent, axes, extent, is_flat
 from zrno.translators.text import Fault, InputError
 
 SERIES = "particles"
@@ -33,27 +33,28 @@ def render(
 ) -> list[Path]:
     """Draw the particles of a result folder, coloured by a field; returns the files written.
 
-    output: FILE.png (numbered where time is "all"), FILE.mp4 or FILE.ogv (a film of all frames); without it FIELD.png in
-    the folder. field: an array, a component of one (`velocity_x`), or the magnitude of a vector. time: "last", "all", or
-    a simulated time, of which the nearest frame is drawn. view: iso (a flat scene is looked at straight), x, y, z, -x,
-    -y, -z. size: width and height in pixels. Camera and colours are the same for all frames.
+    output: FILE.png (numbered where time is "all"), FILE.mp4 or FILE.ogv (a film of all frames); without it FIELD.png
+    in the folder. field: an array, a component of one (`velocity_x`), or the magnitude of a vector. time: "last",
+    "all", or a simulated time, of which the nearest frame is drawn. view: iso (a flat scene is looked at straight), x,
+    y, z, -x, -y, -z. size: width and height in pixels. Camera and colours are the same for all frames.
 
     Raises InputError or ValueError for what is not there, Missing where EGL or ffmpeg is not installed.
     """
     result = load(directory)
     if SERIES not in result.series or not len(result.times):
         raise InputError([Fault(str(directory), 1, 1, "no frames in this folder", expected=f"{SERIES}.pvd")])
+    chosen = _frames(result.times, time)
     target = Path(output) if output is not None else result.directory / _name(field, time, view)
-    film = target.suffix in movie.SUFFIXES
     if target.suffix not in (".png", *movie.SUFFIXES):
         raise ValueError(f"{target} is neither a picture nor a film: give .png, {' or '.join(movie.SUFFIXES)}")
     if min(size) < 64 or max(size) > 8192:
         raise ValueError(f"a picture of {size[0]} x {size[1]} pixels cannot be drawn: give 64 to 8192 a side")
-    frames = range(len(result.times)) if film else _frames(result.times, time)
+    film = target.suffix in movie.SUFFIXES
     if film:
         movie.require(target)
     egl.require()
     target.parent.mkdir(parents=True, exist_ok=True)
+    frames = range(len(result.times)) if film else chosen
     pictures = _pictures(result, frames, field, view, size)
     if film:
         movie.write(target, pictures, rate=_RATE)
@@ -89,27 +90,24 @@ def _pictures(
     result: Result, frames: Sequence[int], field: str, view: str, size: tuple[int, int]
 ) -> Iterator[NDArray[np.uint8]]:
     """Each frame's picture; the first pass over the frames finds the camera and the colours that fit all."""
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    least, most, radius, count = np.inf, -np.inf, 0.0, 0
+    first = result.arrays(SERIES, frames[0])["position"]
+    spread = np.ptp(first, axis=0).astype(float)
+    along = axes(view, spread)
+    box = Extent(np.full(3, np.inf), np.full(3, -np.inf))
+    least, most, count = np.inf, -np.inf, 0
     for i in frames:
         arrays = result.arrays(SERIES, i)
         values = field_of(arrays, field)
         finite = values[np.isfinite(values)]
         if len(finite):
             least, most = min(least, float(finite.min())), max(most, float(finite.max()))
-        points = arrays["position"]
-        low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
-        radius, count = max(radius, float(arrays["radius"].max())), max(count, len(points))
-    along = axes(view, high - low)
-    box = Extent(np.full(3, np.inf), np.full(3, -np.inf))
-    for i in frames if len(frames) == 1 else (frames[0], frames[len(frames) // 2], frames[-1]):
-        seen = extent(result.arrays(SERIES, i)["position"], radius, along)
+        seen = extent(arrays["position"], float(arrays["radius"].max()), along)
         box = Extent(np.minimum(box.low, seen.low), np.maximum(box.high, seen.high))
-    flat = bool((high - low)[2] <= 1e-6 * (high - low).max())
+        count = max(count, len(values))
     shown = quantity(field, result.units)
     when = quantity("time", result.units).unit
     scale = scale_for(least, most, str(shown))
-    stage = Stage(size, along, box, scale, title=result.title, flat=flat, fine=count <= FINE)
+    stage = Stage(size, along, box, scale, title=result.title, flat=is_flat(spread), fine=count <= FINE)
     try:
         for i in frames:
             arrays = result.arrays(SERIES, i)

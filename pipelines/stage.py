@@ -70,7 +70,7 @@ class Stage:
         self._wide = bool(box.size[0] > 0.9 * aspect * box.size[1])
         self._finer = 2 if fine else 1
         self._plotter = pyvista.Plotter(off_screen=True, window_size=[self._finer * n for n in size], lighting="none")
-        self._plotter.background_color = "white"
+        self._plotter.background_color = pyvista.Color("white")
         headlight = pyvista.Light(light_type="headlight")
         self._plotter.add_light(headlight)
 
@@ -121,7 +121,7 @@ class Stage:
         dpi = 100.0
         width, height = self._size
         figure = Figure(figsize=(width / dpi, height / dpi), dpi=dpi, facecolor="white")
-        canvas = FigureCanvasAgg(figure)
+        canvas: Any = FigureCanvasAgg(figure)
         figure.figimage(image, origin="upper", zorder=-1)
         letter = 0.72 * max(11.0, min(height / 34, width / 52))  # points of 1/72 inch at 100 dots an inch
         line = 1 - _HEAD / 2

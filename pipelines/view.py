@@ -36,6 +36,11 @@ class Extent:
         return self.high - self.low
 
 
+def is_flat(spread: Vector) -> bool:
+    """Whether points lie in a plane z = const, as those of a 2D deck. spread: their extent along x, y, z."""
+    return bool(spread[2] <= 1e-6 * spread.max())
+
+
 def axes(view: str, spread: Vector) -> Axes:
     """The axes of a named view: x (seen from +x), y (from -y, so that x runs right), z (from +z), -x .., or iso.
 
@@ -44,7 +49,7 @@ def axes(view: str, spread: Vector) -> Axes:
     """
     if view not in VIEWS:
         raise ValueError(f"no view {view}; there are: {', '.join(VIEWS)}")
-    if view == "iso" and spread[2] <= 1e-6 * spread.max():
+    if view == "iso" and is_flat(spread):
         view = "z"
     name = view.removeprefix("-")
     towards = np.array(_TOWARDS_CAMERA[name], float) * (-1 if view.startswith("-") else 1)
