@@ -71,8 +71,9 @@ def _draw(
     figure.suptitle(title)
     axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
     for axis, (heading, columns) in zip(axes, panels, strict=True):
-        for column, colour in zip(columns, _COLOURS, strict=False):
-            axis.plot(history["time"], history[column], color=colour, linewidth=1.4, label=quantity(column).label)
+        for i, column in enumerate(columns):  # the first on top: of momenta and forces the others are often zero
+            style = {"color": _COLOURS[i], "linewidth": 1.4, "zorder": 3 - 0.1 * i}
+            axis.plot(history["time"], history[column], label=quantity(column).label, **style)
         axis.set_ylabel(_labelled(heading, columns[0], units, system))
         axis.grid(color="#dddddd", linewidth=0.6)
         axis.set_axisbelow(True)

@@ -107,7 +107,7 @@ def _pictures(
     shown = quantity(field, result.units)
     when = quantity("time", result.units).unit
     scale = scale_for(least, most, str(shown))
-    stage = Stage(size, along, box, scale, title=result.title, flat=is_flat(spread), fine=count <= FINE)
+    stage = Stage(size, along, box, scale, title=result.title, flat=is_flat(spread), fine=count * len(frames) <= FINE)
     try:
         for i in frames:
             arrays = result.arrays(SERIES, i)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from zrno.pipelines.view import Axes, Extent, aim
 
-FINE = 200_000  # particles up to which spheres are drawn twice as fine and averaged, so that their edges are smooth
+FINE = 2_000_000  # particles drawn in all up to which spheres are drawn twice as fine and averaged: smooth edges
 _INK = "#222222"
 _HEAD = 0.085  # height of the line with title and time, as a fraction of the picture
 _BAR_RIGHT = 0.13  # width of the colour bar with its numbers, beside the scene
