@@ -1,0 +1,85 @@
+"""What a particle run is asked to do: arrays, laws and options, in the terms of numerics and not of a deck."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..materials import Law
+
+Floats = NDArray[np.float64]
+
+STEP_OPTIONS = {0: "length/viscous wave speed", 1: "h/(c + |v|)", 2: "nearest distance/(c + |v|)"}
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """One material and the particles that own it.
+
+    number: of the deck; law: of `zrno.solvers.materials`; density [mass/length^3]; linear, quadratic: artificial viscosity [-];
+    least, most: limits of the density; strength, exponent: of the repulsive contact.
+    """
+
+    number: int
+    name: str
+    law: Law
+    density: float
+    linear: float = 0.06
+    quadratic: float = 1.5
+    least: float = 1e-10
+    most: float = 1e10
+    strength: float = 0.0
+    exponent: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """A set of particles and how it moves.
+
+    x, v: (n, 3) positions and velocities, unused components zero; mass, h, density, energy (specific): (n,); body: (n,) index into
+    `bodies`; fixed: (n, 3) directions that do not move; id: (n,) numbers of the deck. dimension 1, 2 (plane strain) or 3.
+    step_option: see STEP_OPTIONS; step_factor: of the critical step; first_step: 0 for automatic. potential: bodies repel by the contact
+    potential; otherwise they are ordinary neighbours (kernel contact). body_force: acceleration (3,). original: do as the
+    original program does where that differs.
+    """
+
+    dimension: int
+    x: Floats
+    v: Floats
+    mass: Floats
+    h: Floats
+    density: Floats
+    body: NDArray[np.int64]
+    bodies: tuple[Body, ...]
+    end_time: float
+    fixed: NDArray[np.bool_] | None = None
+    energy: Floats | None = None
+    id: NDArray[np.int64] | None = None
+    step_option: int = 2
+    step_factor: float = 0.8
+    first_step: float = 0.0
+    potential: bool = False
+    body_force: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    original: bool = False
+    title: str = field(default="")
+
+    def __post_init__(self) -> None:
+        n = len(self.x)
+        if n == 0:
+            raise ValueError("a particle run needs at least one particle")
+        if self.dimension not in (1, 2, 3):
+            raise ValueError(f"dimension {self.dimension} must be 1, 2 or 3")
+        if self.step_option not in STEP_OPTIONS:
+            raise ValueError(f"step option {self.step_option} must be one of {sorted(STEP_OPTIONS)}")
+        for name, value in (("mass", self.mass), ("smoothing length", self.h), ("density", self.density)):
+            if value.shape != (n,) or not np.all(value > 0.0) or not np.all(np.isfinite(value)):
+                raise ValueError(f"every particle needs a positive {name}")
+        for name, vectors in (("position", self.x), ("velocity", self.v)):
+            if vectors.shape != (n, 3) or not np.all(np.isfinite(vectors)):
+                raise ValueError(f"every particle needs a finite {name} of three components")
+            if np.any(vectors[:, self.dimension :]):
+                raise ValueError(f"a {self.dimension}D problem has a {name} outside its {self.dimension} dimension(s)")
+        if self.body.min() < 0 or self.body.max() >= len(self.bodies):
+            raise ValueError("a particle's body is not among the bodies")

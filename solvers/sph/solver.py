@@ -1,0 +1,418 @@
+"""The particle solver: owns the state, the neighbour lists and the loop's memory; shows frames, history and checkpoints.
+
+With `original` the states are the same kind, but labelled as the original program labels them: at an output "at t" its
+positions are those of t - dt and its velocities those of the half step before.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import Diverged
+from ..frame import Frame
+from ..jit import set_threads
+from ..materials import PLASTIC_STRAIN, sound_speed, state_rows
+from ..neighbours import FAR, Cells, NeighbourList, blocks
+from . import pairs, step
+from .problem import STEP_OPTIONS, Problem
+from .smoothing import SUPPORT, normaliser
+from .state import Arrays, Numbers, State
+
+SKIN = 0.2  # of the largest h: the list's spare radius
+SMALL = 2000  # fewer particles run on one thread: a parallel region costs more than it saves
+
+Floats = NDArray[np.float64]
+
+
+class Solver:
+    """A run of smoothed particles. `advance` moves it on; between calls the state is synchronised at `time`."""
+
+    def __init__(self, problem: Problem, *, threads: int | None = None, skin: float = SKIN) -> None:
+        self.problem = problem
+        self.end_time = problem.end_time
+        self.builds = 0
+        n = self.n = len(problem.x)
+        self.threads = set_threads(1 if n < SMALL else threads)
+        self._uniform_h = bool(np.all(problem.h == problem.h[0]))
+        self._uniform_mass = bool(np.all(problem.mass == problem.mass[0]))
+        self._radius = SUPPORT * float(problem.h.max())
+        self._skin = skin * float(problem.h.max())
+        self._state = State(n, problem.dimension, max(state_rows(b.law) for b in problem.bodies), problem.potential)
+        self._progress = np.zeros(step.PROGRESS)
+        self._list = NeighbourList(n)
+        self._others = NeighbourList(n)
+        self._block = np.zeros((blocks(n), 3))
+        self._square = np.zeros((blocks(n), 8))
+        self._laws = tuple(b.law for b in problem.bodies)
+        self._numbers = self._make_numbers()
+        self._fill_state()
+        self._rebuild()
+        self._progress[step.PENDING] = 1.0
+        self._run_kernel(0.0, 0)
+        first = problem.first_step or float(self._progress[step.NEXT])
+        self._progress[step.NEXT] = self._progress[step.FIRST] = first
+        if not first > 0.0:
+            raise self._collapsed()
+        if problem.original:
+            self._start_as_original(first)
+        self._start_energy = self._energies()
+
+    # what the run is
+
+    def _make_numbers(self) -> Numbers:
+        p = self.problem
+        h = float(p.h[0])
+        normal = normaliser(p.dimension)
+        wave = np.array([sound_speed(b.law, b.density) for b in p.bodies])
+        viscous = np.array([(b.linear * c, b.quadratic, b.least, b.most) for b, c in zip(p.bodies, wave, strict=True)])
+        scale = normal / h ** (p.dimension + 2) if self._uniform_h else normal
+        return Numbers(
+            dimension=p.dimension,
+            inverse_h2=1.0 / (h * h),
+            scale=scale,
+            force_scale=scale * (float(p.mass[0]) if self._uniform_mass else 1.0),
+            normal=normal,
+            viscous=viscous,
+            wave=wave,
+            body_x=p.body_force[0],
+            body_y=p.body_force[1],
+            body_z=p.body_force[2],
+            step_option=p.step_option,
+            step_factor=p.step_factor,
+            original=p.original,
+            strength=np.array([b.strength for b in p.bodies]),
+            exponent=np.array([b.exponent for b in p.bodies]),
+        )
+
+    def _fill_state(self) -> None:
+        p, s, n = self.problem, self._state, self.n
+        d = s.d
+        for name, values in (("x", p.x), ("x_half", p.x), ("x_start", p.x), ("u", p.v)):
+            s.rows(name)[:, :n] = values.T[:d]
+        for name, scalar in (("mass", p.mass), ("h", p.h), ("density", p.density), ("volume", p.mass / p.density)):
+            s.rows(name)[0, :n] = scalar
+        if p.energy is not None:
+            s.rows("energy")[0, :n] = p.energy
+        s.id[:n] = np.arange(1, n + 1) if p.id is None else p.id
+        s.material[:n] = p.body
+        if p.fixed is not None:
+            s.fixed[:n] = p.fixed @ np.array([1, 2, 4])
+        span = max(float(np.ptp(p.x, axis=0).max()), self._radius)
+        s.place_dummy(float(np.abs(p.x).max()) + FAR * self._radius + span)
+
+    def _start_as_original(self, first: float) -> None:
+        """The original program begins with a whole step of strain, at positions half a step before the start."""
+        s, n = self._state, self.n
+        s.rows("x_half")[:, :n] = s.rows("x")[:, :n] - 0.5 * first * s.rows("u")[:, :n]
+        self._progress[step.LAST] = first
+        self._progress[step.PENDING] = 1.0
+        self._run_kernel(0.0, 0)
+
+    def kernels(self) -> str:
+        """What the loops were built for, for the log."""
+        p = self.problem
+        laws = ", ".join(dict.fromkeys(type(law).__name__ for law in self._laws))
+        return (
+            f"{p.dimension}D, cubic spline, {'one' if self._uniform_h else 'variable'} h, "
+            f"{'one' if self._uniform_mass else 'variable'} mass, laws: {laws}, "
+            f"contact: {'potential' if p.potential else 'kernel' if len(p.bodies) > 1 else 'none'}, "
+            f"step: {STEP_OPTIONS[p.step_option]}, {self.threads} thread(s)"
+            + (", as the original program" if p.original else "")
+        )
+
+    # the loop
+
+    @property
+    def time(self) -> float:
+        """Time reached; with `original` the label of the state, one step later than its positions."""
+        time = float(self._progress[step.TIME])
+        return time + float(self._progress[step.NEXT]) if self.problem.original else time
+
+    @property
+    def step(self) -> int:
+        """Steps done."""
+        return int(self._progress[step.STEPS])
+
+    @property
+    def dt(self) -> float:
+        """The step to come."""
+        return float(self._progress[step.NEXT])
+
+    def advance(self, until: float, max_steps: int) -> None:
+        """Take up to max_steps steps towards the time `until`, which is met exactly (with `original`: passed).
+
+        Raises `Diverged` with the step, the particle and the likely cause; the state is that of the last good step, but
+        for the particles that broke.
+        """
+        wanted = self.step + max_steps
+        while self.step < wanted:
+            reason = self._run_kernel(until, wanted - self.step)
+            if reason == step.REBUILD:
+                self._rebuild()
+            elif reason == step.BROKEN:
+                raise self._broken()
+            elif reason == step.COLLAPSED:
+                raise self._collapsed()
+            else:
+                break
+        if self._progress[step.PENDING]:
+            self._run_kernel(until, 0)
+
+    def _run_kernel(self, until: float, steps: int) -> int:
+        a = self._arrays()
+        solid = self.problem.dimension == 3
+        potential = self.problem.potential
+        return int(
+            step.advance(
+                self.n,
+                a.z if solid else None,
+                None if self._uniform_h else a.h,
+                None if self._uniform_mass else a.mass,
+                a.nearest if self.problem.step_option == 2 else None,
+                True if self.problem.dimension == 1 else None,
+                a.cx if potential else None,
+                True if potential else None,
+                a,
+                self._numbers,
+                self._laws,
+                self._progress,
+                float(until),
+                steps,
+                (0.5 * self._skin) ** 2,
+            )
+        )
+
+    def _arrays(self) -> Arrays:
+        s = self._state
+        positions = {f"{axis}{suffix}": s.row(f"x{suffix}", k) for suffix in ("", "_half", "_list") for k, axis in enumerate("xyz")}
+        return Arrays(
+            **positions,
+            u=s.row("u", 0),
+            v=s.row("u", 1),
+            w=s.row("u", 2),
+            ax=s.row("a", 0),
+            ay=s.row("a", 1),
+            az=s.row("a", 2),
+            cx=s.row("c", 0),
+            cy=s.row("c", 1),
+            cz=s.row("c", 2),
+            contact_work=s.row("contact_work"),
+            stress=s.rows("stress"),
+            gradient=s.rows("gradient"),
+            s=s.rows("s"),
+            density=s.row("density"),
+            volume=s.row("volume"),
+            mass=s.row("mass"),
+            h=s.row("h"),
+            energy=s.row("energy"),
+            dissipated=s.row("dissipated"),
+            nearest=s.row("nearest"),
+            state=s.rows("state"),
+            id=s.id,
+            material=s.material,
+            fixed=s.fixed,
+            first=self._list.first,
+            count=self._list.count,
+            rows=self._list.rows,
+            c_first=self._others.first,
+            c_count=self._others.count,
+            c_rows=self._others.rows,
+            block=self._block,
+            square=self._square,
+        )
+
+    def _rebuild(self, *, sort: bool = True) -> None:
+        """Sort the particles by cell and list their neighbours; sort False: from where the last list was built, as it was."""
+        s, n = self._state, self.n
+        if sort:
+            s.rows("x_list")[:] = s.rows("x")
+        x, y, z = s.row("x_list", 0), s.row("x_list", 1), s.row("x_list", 2)
+        assert x is not None
+        assert y is not None
+        cells = Cells(n, x, y, z, self._radius + self._skin)
+        if sort:
+            s.sort(cells.order)
+        h = None if self._uniform_h else s.row("h")
+        radius = self._radius if h is None else 0.5 * self._radius
+        group = s.material if self.problem.potential else None
+        self._list.build(cells, x, y, z, radius=radius, skin=self._skin, h=h, group=group)
+        if self.problem.potential:
+            self._others.build(cells, x, y, z, radius=radius, skin=self._skin, h=h, group=group, other=True)
+        if (longest := int(self._list.count.max())) > self._square.shape[1]:
+            self._square = np.zeros((blocks(n), longest + 64))
+        self.builds += 1
+
+    def _broken(self) -> Diverged:
+        i = int(self._progress[step.BAD])
+        return Diverged(
+            self.step + 1,
+            int(self._state.id[i]),
+            "its velocity is not finite: the step factor may be too large, two particles coincide, or the material is stretched apart",
+        )
+
+    def _collapsed(self) -> Diverged:
+        p, s, n = self.problem, self._state, self.n
+        cause = "the time step collapsed"
+        item = 0
+        if p.step_option == 2:
+            i = int(np.argmin(s.rows("nearest")[0, :n]))
+            item = int(s.id[i])
+            distance = math.sqrt(s.rows("nearest")[0, i])
+            cause += f" to {self.dt:.3g}: its nearest neighbour is only {distance:.3g} away (two particles coincide or clump)"
+        return Diverged(self.step, item, cause)
+
+    # what it shows
+
+    def _deck_order(self) -> NDArray[np.int64]:
+        return np.argsort(self._state.id[: self.n], kind="stable")
+
+    def _velocity(self) -> Floats:
+        """(d, n) velocities at the time of the positions; with `original` those of the half step before."""
+        s, n = self._state, self.n
+        back = 0.0 if self.problem.original else 0.5 * float(self._progress[step.LAST])
+        velocity = s.rows("u")[:, :n] + back * s.rows("a")[:, :n]
+        for k in range(s.d):
+            velocity[k, (s.fixed[:n] >> k) & 1 == 1] = 0.0
+        return velocity
+
+    def frame(self) -> Frame:
+        """The state now, in the order of the deck."""
+        p, s, n = self.problem, self._state, self.n
+        order = self._deck_order()
+
+        def vectors(rows: Floats) -> Floats:
+            full = np.zeros((n, 3))
+            full[:, : s.d] = rows[:, order].T
+            return full
+
+        stress = np.zeros((n, 6))
+        rows = s.rows("stress")[:, :n]
+        stress[:, : len(rows)] = rows[:, order].T
+        xx, yy, zz, xy, yz, zx = stress.T
+        shear = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3.0 * (xy**2 + yz**2 + zx**2)
+        volume = s.rows("mass")[0, :n] / s.rows("density")[0, :n]
+        radius = {1: 0.5 * volume, 2: np.sqrt(volume / math.pi), 3: np.cbrt(0.75 * volume / math.pi)}[p.dimension]
+        plastic = s.rows("state")[PLASTIC_STRAIN, :n][order] if len(s.rows("state")) else np.zeros(n)
+        numbers = np.array([b.number for b in p.bodies])
+        x = s.rows("x")[:, :n]
+        return Frame(
+            time=self.time,
+            step=self.step,
+            particles={
+                "id": s.id[:n][order],
+                "material": numbers[s.material[:n][order]],
+                "position": vectors(x),
+                "velocity": vectors(self._velocity()),
+                "density": s.rows("density")[0, :n][order],
+                "mass": s.rows("mass")[0, :n][order],
+                "radius": radius[order],
+                "pressure": -(xx + yy + zz) / 3.0,
+                "stress": stress,
+                "von_mises": np.sqrt(shear),
+                "plastic_strain": plastic,
+                "displacement": vectors(x - s.rows("x_start")[:, :n]),
+            },
+        )
+
+    def _energies(self) -> dict[str, float]:
+        p, s, n = self.problem, self._state, self.n
+        mass = s.rows("mass")[0, :n]
+        moved = s.rows("x")[:, :n] - s.rows("x_start")[:, :n]
+        contact = s.rows("contact_work")
+        return {
+            "kinetic": 0.5 * float(np.sum(mass * np.sum(self._velocity() ** 2, axis=0))),
+            "internal": float(np.sum(mass * s.rows("energy")[0, :n])),
+            "dissipated": float(np.sum(mass * s.rows("dissipated")[0, :n])),
+            "external_work": float(np.sum(mass * (np.array(p.body_force[: s.d]) @ moved))),
+            "contact_energy": -float(np.sum(contact[0, :n])) if len(contact) else 0.0,
+        }
+
+    def _contact_force(self) -> Floats:
+        """Force [3] of all other bodies on the first one."""
+        s, n = self._state, self.n
+        force = np.zeros(3)
+        a = self._arrays()
+        if self.problem.potential:
+            first = s.material[:n] == 0
+            force[: s.d] = (s.rows("c")[:, :n] * s.rows("mass")[0, :n] * first).sum(axis=1)
+        elif len(self.problem.bodies) > 1:
+            pairs.interface_force(
+                0, n, a.first, a.count, a.rows, a.x, a.y, a.z, a.s, a.mass, a.h,
+                -(self.problem.dimension + 2.0), self._numbers.normal, a.material, 0, force,
+            )  # fmt: skip
+        return force
+
+    def history(self) -> dict[str, float]:
+        """One row of history.csv: energies, momentum, the contact force on the first material.
+
+        `internal` is elastic and dissipated energy together, `dissipated` the part that plastic flow and viscosity took;
+        kinetic + internal + contact_energy - external_work stays constant.
+        """
+        s, n = self._state, self.n
+        energies = self._energies()
+        contact_energy = energies.pop("contact_energy")
+        momentum = np.zeros(3)
+        momentum[: s.d] = (self._velocity() * s.rows("mass")[0, :n]).sum(axis=1)
+        force = self._contact_force()
+        plastic = s.rows("state")[PLASTIC_STRAIN, :n] if len(s.rows("state")) else np.zeros(1)
+        return {
+            "time": self.time,
+            "dt": self.dt,
+            **energies,
+            **dict(zip(("momentum_x", "momentum_y", "momentum_z"), momentum.tolist(), strict=True)),
+            **dict(zip(("contact_force_x", "contact_force_y", "contact_force_z"), force.tolist(), strict=True)),
+            "active": float(n),
+            "contact_energy": contact_energy,
+            "max_plastic_strain": float(plastic.max()),
+            "step": float(self.step),
+        }
+
+    def energy_report(self) -> dict[str, float]:
+        """Energies at the start and now; balance_error is relative to the largest of kinetic, internal and external work."""
+
+        def total(e: dict[str, float]) -> float:
+            return e["kinetic"] + e["internal"] + e["contact_energy"] - e["external_work"]
+
+        start, now = self._start_energy, self._energies()
+        scale = max(start["kinetic"], now["kinetic"], abs(now["internal"]), abs(now["external_work"]), 1e-300)
+        return {
+            "initial": start["kinetic"] + start["internal"],
+            "final": now["kinetic"] + now["internal"] + now["contact_energy"],
+            "kinetic": now["kinetic"],
+            "internal": now["internal"],
+            "external_work": now["external_work"],
+            "dissipated": now["dissipated"],
+            "balance_error": abs(total(now) - total(start)) / scale,
+        }
+
+    # to be continued
+
+    def checkpoint(self) -> dict[str, Any]:
+        """Everything that another process needs to go on bit for bit, including where the neighbour list was built."""
+        s, n = self._state, self.n
+        data: dict[str, Any] = {name: np.array(s.rows(name)[:, :n]) for name in s.slices}
+        data |= {"id": s.id[:n].copy(), "material": s.material[:n].copy(), "fixed": s.fixed[:n].copy()}
+        return data | {
+            "progress": self._progress.copy(),
+            "start_energy": np.array(list(self._start_energy.values())),
+            "time": self.time,
+            "step": self.step,
+        }
+
+    def restore(self, data: dict[str, Any]) -> None:
+        """Go on from a checkpoint of the same problem. ValueError when it is of another one."""
+        s, n = self._state, self.n
+        for name in s.slices:
+            if name not in data or np.shape(data[name]) != s.rows(name)[:, :n].shape:
+                raise ValueError(f"the checkpoint does not fit this run: {name} is missing or has another shape")
+        for name in s.slices:
+            s.rows(name)[:, :n] = data[name]
+        for name in ("id", "material", "fixed"):
+            getattr(s, name)[:n] = data[name]
+        self._progress[:] = data["progress"]
+        self._start_energy = dict(zip(self._start_energy, np.asarray(data["start_energy"]).tolist(), strict=True))
+        self._rebuild(sort=False)
