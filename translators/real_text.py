@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -22,7 +23,10 @@ def real_text(value: float, width: int, *, implied: int = 0) -> tuple[str, bool]
         if len(text) <= width:
             return text, True
     for count in range(min(len(digits), width), 0, -1):
-        for text in _spellings(*_decimal(f"{value:.{count - 1}e}"), implied):
+        rounded = f"{value:.{count - 1}e}"
+        if not math.isfinite(float(rounded)):  # rounded up past the largest double
+            continue
+        for text in _spellings(*_decimal(rounded), implied):
             if len(text) <= width:
                 return text, False
     raise ValueError(f"{value!r} does not fit {width} columns")

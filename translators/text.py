@@ -1,7 +1,7 @@
 """Text decks: fixed-width fields, block parsing, and faults that name their place. Shared by all readers.
 
 A deck is a file of lines ("cards") cut into fixed columns as a Fortran format says. `Layout` holds the columns of one
-kind of card, `Cards` hands out the cards of a file in order, `real_text` writes a number into a field.
+kind of card, `Cards` hands out the cards of a file in order.
 """
 
 from __future__ import annotations

@@ -46,7 +46,9 @@ MATERIAL_TITLE = Layout("a72", "material_title")
 PROPERTY_CARDS = 6
 PROPERTIES = Layout("8e10.0", "value_1 value_2 value_3 value_4 value_5 value_6 value_7 value_8")
 
-EXTRA = Layout("i8,4e20.0", "number mass h rho e")
+# MCM's format is i8,4e20.0 on lines of 80 columns: of the energy it sees the first 12.
+EXTRA = Layout("i8,3e20.0,e12.0", "number mass h rho e")
+PAST_LINE = Layout("a80,a80", "line past")
 HISTORY = Layout("10i8", " ".join(f"id_{i}" for i in range(1, 11)))
 VELOCITY = Layout("i8,3e10.0", "number vx vy vz")
 PLANE_FLAGS = Layout("6i10", "xmin xmax ymin ymax zmin zmax")

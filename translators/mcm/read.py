@@ -237,6 +237,9 @@ class _Deck:
 
     def _extra(self, particles: Particles, extra: dict[str, bool]) -> None:
         count = len(particles)
+        if self.cards.left and self.cards.peek(layouts.PAST_LINE, 1).text("past"):
+            place = f"{self.path}:{self.cards.next_line}"
+            self.model.warnings.append(f"{place}: text past column 80 (the energy's last 8 columns) is not read")
         block = self.cards.block(layouts.EXTRA, count, "mass, smoothing length, density and energy card")
         block.check(
             "number", block["number"] == np.arange(1, count + 1), "particle number out of order", "1, 2, 3, ..."

@@ -246,14 +246,17 @@ class _Writer:
         if p.mass is None and p.h is None and p.rho is None:
             return
         yield _joined(self._heading(layouts.EXTRA))
+        columns_of = (("mass", p.mass, 20), ("smoothing length", p.h, 20), ("density", p.rho, 20), ("energy", p.e, 12))
         for start in range(0, len(p), _CHUNK):
             stop = min(start + _CHUNK, len(p))
             columns = [
-                ["0.0"] * (stop - start) if values is None else self._texts(values[start:stop], 20, f"particle {name}")
-                for name, values in (("mass", p.mass), ("smoothing length", p.h), ("density", p.rho), ("energy", p.e))
+                ["0.0"] * (stop - start)
+                if values is None
+                else self._texts(values[start:stop], width, f"particle {name}")
+                for name, values, width in columns_of
             ]
             yield "".join(
-                map("%8d%20s%20s%20s%20s\n".__mod__, zip(range(start + 1, stop + 1), *columns, strict=True))
+                map("%8d%20s%20s%20s%12s\n".__mod__, zip(range(start + 1, stop + 1), *columns, strict=True))
             ).encode("ascii")
 
     def _history(self) -> Iterator[str]:
