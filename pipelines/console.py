@@ -7,11 +7,18 @@ import sys
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 FAILED, BAD_INPUT, NOT_INSTALLED, INTERRUPTED = 1, 2, 3, 130
 _STATUS = {FAILED: "failed", BAD_INPUT: "bad input", NOT_INSTALLED: "not installed", INTERRUPTED: "interrupted"}
+
+_answers: list[dict[str, Any]] = []  # of this process: --json promises exactly one
+
+
+def answered() -> bool:
+    """Whether a command has given its result, also where its exit code tells of a fault."""
+    return bool(_answers)
 
 
 @dataclass(slots=True)
@@ -22,7 +29,6 @@ class Console:
     verbose: bool = False
     quiet: bool = False
     code: int = 0
-    answered: bool = field(default=False, init=False)
 
     @property
     def progress(self) -> bool:
@@ -36,7 +42,7 @@ class Console:
 
     def answer(self, data: dict[str, Any], text: str = "") -> None:
         """The result: `data` as one JSON object with --json, else `text`. Once a command."""
-        self.answered = True
+        _answers.append(data)
         if self.json:
             print(json.dumps(data, default=str))
         elif text:
@@ -78,6 +84,8 @@ def explain(error: Exception) -> tuple[int, list[str]]:
             return FAILED, [f"error: {error}"]
         case OSError() if error.filename is not None:
             return BAD_INPUT, [f"{error.filename}: error: {(error.strerror or str(error)).lower()}"]
+        case ImportError():
+            return NOT_INSTALLED, [f"error: {error}"]
         case ValueError():  # what the translators and solvers raise for a request that they cannot meet
             return BAD_INPUT, [f"error: {error}"]
     return FAILED, [f"internal error: {type(error).__name__}: {error} (-v shows where)"]
@@ -86,5 +94,5 @@ def explain(error: Exception) -> tuple[int, list[str]]:
 def _fail(console: Console, code: int, lines: list[str]) -> None:
     console.code = code
     print("\n".join(lines), file=sys.stderr)
-    if console.json and not console.answered:
+    if console.json and not answered():
         console.answer({"status": _STATUS[code], "errors": lines})

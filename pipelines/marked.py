@@ -11,7 +11,7 @@ from typing import Any
 
 import yaml
 
-from zrno.translators.text import Fault, Faults, InputError, read_bytes
+from zrno.translators.text import Fault, Faults, read_bytes
 
 Location = tuple[str | int, ...]
 _FLOAT = re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?$|[-+]?\.(inf|Inf|INF)$|\.(nan|NaN|NAN)$")
@@ -54,21 +54,19 @@ class Marked:
 
     def override(self, location: Location, value: Any, place: Place) -> None:
         """Put a value that comes from elsewhere, e.g. the command line; mappings on the way are made."""
-        here = self.data
+        here: Any = self.data
         for step in location[:-1]:
             if isinstance(here, dict):
                 here = here.setdefault(step, {})
             elif isinstance(here, list) and isinstance(step, int) and step < len(here):
                 here = here[step]
-            else:
-                break
-        if isinstance(here, dict) or (isinstance(here, list) and location[-1] in range(len(here))):
-            here[location[-1]] = value
-            self.values[location] = self.keys[location] = place
+        last: Any = location[-1]
+        if isinstance(here, dict) or (isinstance(here, list) and isinstance(last, int) and last < len(here)):
+            here[last] = value
         else:
-            raise InputError(
-                [Fault(place.path, place.line, place.column, f"there is no {dotted(location)}", place.text)]
-            )
+            self.faults.found.append(Fault(place.path, place.line, 1, f"there is no {dotted(location)}", place.text))
+            self.faults.stop()
+        self.values[location] = self.keys[location] = place
 
 
 def dotted(location: Location) -> str:

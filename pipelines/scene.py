@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import types
 import typing
-from collections.abc import Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -14,6 +14,8 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 from zrno.pipelines import marked
 from zrno.pipelines.marked import Location, Marked, Place, did_you_mean, dotted
 from zrno.pipelines.units import SYSTEMS, Units
+from zrno.pipelines.view import VIEWS
+from zrno.translators import settings as analysis
 from zrno.translators.text import MAX_FAULTS, InputError
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
@@ -22,6 +24,16 @@ NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 
 def _as_list(value: Any) -> Any:
     return value if isinstance(value, list) else [value]
+
+
+def _flat(value: Any, above: str = "") -> Any:
+    """Nested mappings as one, by dotted key."""
+    if not isinstance(value, dict):
+        return value
+    flat: dict[str, Any] = {}
+    for key, below in value.items():
+        flat |= _flat(below, f"{above}{key}.") if isinstance(below, dict) else {f"{above}{key}": below}
+    return flat
 
 
 def _wrong(message: str, expected: str) -> PydanticCustomError:
@@ -37,13 +49,14 @@ class Section(BaseModel):
 class Mesh(Section):
     """A mesh that is made into a deck before the run, by the rules of `zrno convert`.
 
-    settings: files or mappings in place, one or a list of them; the later say over the earlier.
+    set: settings in place, by dotted key or nested, stronger than those of the file.
     numbers: values for the parameters of a .geo script.
     """
 
     source: str
     target: str
-    settings: Annotated[list[str | dict[str, Any]], BeforeValidator(_as_list)] = []
+    settings: str | None = None
+    set: Annotated[dict[str, Any], BeforeValidator(_flat)] = {}
     particles: Literal["solids", "shells", "nodes"] | None = None
     spacing: Positive | None = None
     part: Annotated[list[str | int], BeforeValidator(_as_list)] = []
@@ -94,6 +107,13 @@ class Picture(Section):
     def _time_or_word(cls, value: float | str) -> float | str:
         if isinstance(value, str) and value not in ("last", "all"):
             raise _wrong("is no time", "a time, last or all")
+        return value
+
+    @field_validator("view")
+    @classmethod
+    def _known_view(cls, value: str) -> str:
+        if value not in VIEWS:
+            raise _wrong("is no view", "one of " + ", ".join(VIEWS))
         return value
 
 
@@ -147,17 +167,23 @@ class Scene(Section):
         return None if self.units is None else SYSTEMS[self.units]
 
 
-def load(path: Path | str, overrides: Sequence[tuple[Location, Any, Place]] = ()) -> Scene:
-    """Read a scene file. overrides: (location, value, place) that replace what the file says.
+# What `--set KEY=VALUE` may name of a mesh without saying which: it holds for all of them.
+OF_EVERY_MESH = ("spacing", "particles", "dialect", "numbers")
 
+
+def load(path: Path | str, options: Mapping[str, Any] | None = None) -> Scene:
+    """Read a scene file. options: by dotted key, stronger than the file's (`options.split` says what they may be).
+
+    A key of the scene replaces that key; a key of `OF_EVERY_MESH` and one of the settings is for all meshes.
     Raises InputError with every fault, up to 20, also for files that the scene names and that are not there.
     """
     document = marked.load(path)
     if not isinstance(document.data, dict):
         document.fault((), "a scene is a mapping of keys", "title, decks, ...")
         document.faults.stop()
-    for location, value, place in overrides:
-        document.override(location, value, place)
+    for key, value in (options or {}).items():
+        for location in _targets(document.data, key):
+            document.override(location, value, Place("--set", 1, len(key) + 2, str(value)))
     scene = None
     try:
         scene = Scene.model_validate(document.data)
@@ -166,10 +192,20 @@ def load(path: Path | str, overrides: Sequence[tuple[Location, Any, Place]] = ()
             _note(document, detail)
     if scene is not None:
         _check_files(document, scene, Path(path).parent)
-    if document.faults.found:
+        _check_settings(document, scene, Path(path).parent)
+    if scene is None or document.faults.found:
         raise InputError(sorted(set(document.faults.found))[:MAX_FAULTS])
-    assert scene is not None
     return scene
+
+
+def _targets(data: dict[str, Any], key: str) -> list[Location]:
+    """The places in a scene that an option by dotted key replaces."""
+    steps: Location = tuple(int(step) if step.isdigit() else step for step in key.split("."))
+    if steps[0] in Scene.model_fields:
+        return [steps]
+    meshes = data.get("meshes")
+    below = steps if steps[0] in OF_EVERY_MESH else ("set", key)
+    return [("meshes", i, *below) for i in range(len(meshes) if isinstance(meshes, list) else 0)]
 
 
 def _note(document: Marked, detail: ErrorDetails) -> None:
@@ -221,9 +257,8 @@ def _check_files(document: Marked, scene: Scene, folder: Path) -> None:
     named: list[tuple[Location, str]] = []
     for i, mesh in enumerate(scene.meshes):
         named.append((("meshes", i, "source"), mesh.source))
-        for k, settings in enumerate(mesh.settings):
-            if isinstance(settings, str):
-                named.append((("meshes", i, "settings", k), settings))
+        if mesh.settings is not None:
+            named.append((("meshes", i, "settings"), mesh.settings))
     made = {mesh.target for mesh in scene.meshes}
     named += [(("decks", i), deck) for i, deck in enumerate(scene.decks) if deck not in made]
     if scene.study is not None and scene.study.reference is not None:
@@ -232,3 +267,24 @@ def _check_files(document: Marked, scene: Scene, folder: Path) -> None:
         if not (folder / name).is_file():
             expected = "a file beside the scene" + (", or a target of meshes" if location[0] == "decks" else "")
             document.fault(location, f"{dotted(location)}: no such file", expected)
+
+
+def _check_settings(document: Marked, scene: Scene, folder: Path) -> None:
+    """The settings of every mesh, those of its file with their place there, those in the scene with theirs here."""
+    for i, mesh in enumerate(scene.meshes):
+        file = None if mesh.settings is None else folder / mesh.settings
+        if file is not None and not file.is_file():
+            continue
+        try:
+            analysis.load(file, overrides=mesh.set)
+        except InputError as error:
+            for fault in error.faults:
+                key = next(
+                    (key for key in mesh.set if (fault.line, fault.column) == (1, 1) and key in fault.message), ""
+                )
+                if key or file is None:
+                    here: Location = ("meshes", i, "set", key)
+                    nested: Location = ("meshes", i, "set", *key.split("."))
+                    document.fault(here if here in document.values else nested, fault.message, fault.expected)
+                else:
+                    document.faults.found.append(fault)

@@ -1,0 +1,107 @@
+"""Meshes and decks into decks and meshes, with a report of what the target cannot say."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from zrno.pipelines.merge import merge
+from zrno.pipelines.scene import Scene
+from zrno.translators import Model, Report, read, settings, write
+from zrno.translators.convert import to_particles
+
+
+def convert(
+    sources: Sequence[Path],
+    target: Path,
+    *,
+    particles: str | None = None,
+    spacing: float | None = None,
+    parts: Sequence[str | int] = (),
+    settings_file: Path | None = None,
+    overrides: Mapping[str, Any] | None = None,
+    numbers: Mapping[str, float] | None = None,
+    dialect: str | None = None,
+    strict: bool = False,
+) -> dict[str, Any]:
+    """Translate files; returns the keys of `zrno convert --json` and `notes`.
+
+    A mesh becomes particles where the target is a particle deck: particles, spacing, parts, settings_file and overrides
+    (settings by dotted key) say how. numbers: parameters of a .geo script. dialect: of the .mcm that is written.
+    strict: what the target cannot say is an error. Raises InputError and ValueError; nothing is written then.
+    """
+    model = merge([_read(source, numbers) for source in sources])
+    source = model.summary()
+    report = Report()
+    if len(sources) > 1:
+        report.notes.append(f"{len(sources)} sources merged: ids of the second and later ones are offset")
+    deck = target.suffix.lower() == ".mcm"
+    makes_particles = deck and model.particles is None
+    if makes_particles:
+        analysis = settings.load(settings_file, overrides=overrides)
+        model, made = to_particles(model, analysis, particles or "solids", spacing, list(parts) or None)
+        report.extend(made)
+    elif particles or spacing or parts or settings_file or overrides:
+        raise ValueError("--part, --particles, --spacing and --settings make a particle deck (.mcm) of a mesh")
+    if dialect is not None and not deck:
+        raise ValueError(f"{target}: a dialect is for .mcm decks")
+    report.extend(_write(model, target, {} if dialect is None else {"dialect": dialect}, report if strict else None))
+    return {
+        "source": source,
+        "target": model.summary() | {"format": target.suffix.lower().lstrip(".")},
+        **report.as_dict(),
+        "notes": report.notes,
+    }
+
+
+def make_decks(scene: Scene, folder: Path) -> list[dict[str, Any]]:
+    """Make every deck that a scene makes from a mesh, in the scene's folder; returns what `convert` returns of each."""
+    return [
+        convert(
+            [folder / mesh.source],
+            folder / mesh.target,
+            particles=mesh.particles,
+            spacing=mesh.spacing,
+            parts=mesh.part,
+            settings_file=None if mesh.settings is None else folder / mesh.settings,
+            overrides=mesh.set,
+            numbers=mesh.numbers,
+            dialect=mesh.dialect,
+        )
+        for mesh in scene.meshes
+    ]
+
+
+def report_text(result: Mapping[str, Any]) -> str:
+    """What was approximated and dropped, a line each."""
+    lines = [
+        f"{kind}: {i['count']} {i['what']} - {i['where']}" for kind in ("approximated", "dropped") for i in result[kind]
+    ]
+    return "\n".join([*result["notes"], *lines])
+
+
+def _read(path: Path, numbers: Mapping[str, float] | None) -> Model:
+    if not numbers:
+        return read(path)
+    if path.suffix.lower() != ".geo":
+        raise ValueError(f"{path}: numbers are parameters of a .geo script")
+    from zrno.translators.gmsh.geo import read as read_geo
+
+    return read_geo(path, numbers=numbers)
+
+
+def _write(model: Model, target: Path, options: dict[str, Any], strict: Report | None) -> Report:
+    """Write the target; where nothing may be lost (strict: what is lost so far), only when nothing was."""
+    if strict is None:
+        return write(model, target, **options)
+    with tempfile.TemporaryDirectory(dir=target.parent, prefix=".zrno-") as folder:
+        draft = Path(folder) / target.name
+        report = write(model, draft, **options)
+        lost = [*strict.approximated, *strict.dropped, *report.approximated, *report.dropped]
+        if lost:
+            items = "; ".join(f"{item.count} {item.what} ({item.where})" for item in lost)
+            raise ValueError(f"{target}: the target cannot say all (--strict): {items}")
+        draft.replace(target)
+    return report

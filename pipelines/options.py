@@ -1,0 +1,109 @@
+"""`--set KEY=VALUE`: what its keys may be, and to which part of a run each belongs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import yaml
+
+from zrno.pipelines.marked import did_you_mean, parse_value
+from zrno.pipelines.scene import OF_EVERY_MESH, Scene
+from zrno.translators.model import Model
+from zrno.translators.settings import TABLE
+from zrno.translators.settings import load as load_settings
+from zrno.translators.text import Fault, InputError
+
+RUN = {"compat": ("original",)}
+SETTINGS = tuple(item.key for item in TABLE)
+
+# Settings that a deck holds as they are: key -> field of the particle control cards.
+_CONTROL = {
+    "end_time": "end_time",
+    "step_factor": "step_factor",
+    "initial_step": "initial_step",
+    "output_interval": "output_interval",
+    "history_interval": "history_interval",
+    "step_option": "step_option",
+    "h_option": "h_option",
+}
+
+
+@dataclass(slots=True)
+class Options:
+    """The keys of `--set`, apart. run: the solver's own (`compat`); scene: for `scene.load`; settings: deck fields."""
+
+    run: dict[str, Any] = field(default_factory=dict)
+    scene: dict[str, Any] = field(default_factory=dict)
+    settings: dict[str, Any] = field(default_factory=dict)
+
+
+def parse(pairs: Sequence[str]) -> dict[str, Any]:
+    """KEY=VALUE texts as values by key, a value as it stands in YAML. Raises InputError."""
+    options: dict[str, Any] = {}
+    faults = []
+    for pair in pairs:
+        key, equals, text = pair.partition("=")
+        try:
+            options[key.strip()] = parse_value(text)
+        except yaml.YAMLError:
+            faults.append(Fault("--set", 1, len(key) + 2, f"the value of {key} is not YAML", text, "KEY=VALUE"))
+        if not equals or not key.strip():
+            faults.append(Fault("--set", 1, 1, "not a key and its value", pair, "KEY=VALUE"))
+    if faults:
+        raise InputError(faults)
+    return options
+
+
+def split(options: Mapping[str, Any]) -> Options:
+    """Sort options by what they belong to: the run, the scene file, or settings of decks. Raises InputError.
+
+    Keys of the scene and of its meshes go to `scene`; settings go to both `scene`, which makes its meshes by them, and
+    `settings`, for decks that are there already (`apply`).
+    """
+    found = Options()
+    faults = []
+    for key, value in options.items():
+        first = key.partition(".")[0]
+        if key in RUN:
+            found.run[key] = value
+            if value not in RUN[key]:
+                expected = "one of " + ", ".join(RUN[key])
+                faults.append(Fault("--set", 1, len(key) + 2, f"{key} has a wrong value", str(value), expected))
+        elif first in Scene.model_fields or first in OF_EVERY_MESH:
+            found.scene[key] = value
+        elif first in SETTINGS:
+            found.scene[key] = found.settings[key] = value
+        else:
+            known = (*RUN, *Scene.model_fields, *OF_EVERY_MESH, *SETTINGS)
+            faults.append(Fault("--set", 1, 1, f"unknown key {key}", key, did_you_mean(first, known)))
+    if faults:
+        raise InputError(faults)
+    return found
+
+
+def apply(settings: Mapping[str, Any], model: Model) -> None:
+    """Put settings into a deck that was read. Raises InputError for those that only a mesh can be made with."""
+    values = load_settings(None, overrides=settings)
+    control = model.particle_control
+    assert control is not None
+    faults = []
+    for key, value in settings.items():
+        match key:
+            case _ if key in _CONTROL:
+                setattr(control, _CONTROL[key], values[key])
+            case "xsph":
+                control.velocity_option = int(values[key])
+            case "gravity":
+                control.base_acceleration = values[key] if any(values[key]) else None
+            case "viscosity.quadratic" | "viscosity.linear":
+                name = key.replace(".", "_")
+                for material in model.materials.values():
+                    setattr(material, name, values["viscosity"][key.partition(".")[2]])
+            case _:
+                expected = ", ".join((*_CONTROL, "xsph", "gravity", "viscosity.quadratic", "viscosity.linear"))
+                message = f"{key} is for decks that a scene makes from a mesh; this deck is there already"
+                faults.append(Fault("--set", 1, len(key) + 2, message, str(value), expected))
+    if faults:
+        raise InputError(faults)
