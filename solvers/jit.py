@@ -66,23 +66,9 @@ def _configure() -> None:
 
 _configure()
 
-prange = numba.prange
 Function = Callable[..., Any]
 
 
 def kernel(function: Function) -> Any:
     """Compile a function of arrays and scalars, cached on disk; NaN is kept, division by zero gives inf."""
     return numba.njit(cache=True, fastmath=FASTMATH, error_model="numpy", nogil=True)(function)
-
-
-def parallel_kernel(function: Function) -> Any:
-    """As `kernel`, with `prange` over threads. Keep the body to one loop over blocks that calls a serial kernel."""
-    return numba.njit(cache=True, fastmath=FASTMATH, error_model="numpy", nogil=True, parallel=True)(function)
-
-
-def set_threads(threads: int | None) -> int:
-    """Use this many threads (None: all that the machine lets numba start); returns the number in force."""
-    most = int(numba.config.NUMBA_NUM_THREADS)
-    wanted = most if threads is None else max(1, min(int(threads), most))
-    numba.set_num_threads(wanted)
-    return wanted

@@ -14,9 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .jit import kernel, parallel_kernel, prange
+from .jit import kernel
+from .threads import run, share
 
-BLOCK = 256  # particles in one piece of parallel work: fixed, so that results do not depend on the number of threads
+BLOCK = 256  # particles whose rows share one stretch of memory
 LANES = 8  # rows are padded to this many entries
 FAR = 1.0e12  # the dummy particle's coordinate in units of the search radius; its square is finite in single precision
 _CHUNK = 1024  # candidates sifted at once
@@ -186,19 +187,20 @@ def _fill_rows(i0, i1, n, x, y, z, h, reach, h_max, origin, size, shape, start, 
     return needed - at
 
 
-@parallel_kernel
-def _fill(n, x, y, z, h, reach, h_max, origin, size, shape, start, group, other, first, count, rows, room, needed):
-    for b in prange(len(needed)):
-        i0 = b * BLOCK
-        i1 = min(n, i0 + BLOCK)
+@kernel
+def _fill(
+    thread, threads, sync, n, x, y, z, h, reach, h_max, origin, size, shape, start, group, other, first, count, rows, room, needed
+):
+    b0, b1 = share(len(needed), thread, threads)
+    for b in range(b0, b1):
         needed[b] = _fill_rows(
-            i0, i1, n, x, y, z, h, reach, h_max, origin, size, shape, start, group, other, first, count, rows,
-            room[b], room[b + 1],
-        )
+            b * BLOCK, min(n, (b + 1) * BLOCK), n, x, y, z, h, reach, h_max, origin, size, shape, start, group, other,
+            first, count, rows, room[b], room[b + 1],
+        )  # fmt: skip
 
 
 def blocks(n: int) -> int:
-    """Pieces of parallel work for n particles."""
+    """Blocks of n particles."""
     return (n + BLOCK - 1) // BLOCK
 
 
@@ -263,6 +265,7 @@ class NeighbourList:
         h: Floats | None = None,
         group: Any = None,
         other: bool = False,
+        threads: int = 1,
     ) -> None:
         """List the neighbours of points that are already in the order of `cells`.
 
@@ -272,8 +275,8 @@ class NeighbourList:
         reach = skin if h is not None else radius + skin
         needed = np.zeros(blocks(self.n), np.int64)
         while True:
-            _fill(
-                self.n, x, y, z, h, reach, radius, cells.origin, cells.size, cells.shape, cells.start, group, other,
+            run(
+                _fill, threads, self.n, x, y, z, h, reach, radius, cells.origin, cells.size, cells.shape, cells.start, group, other,
                 self.first, self.count, self.rows, self._room, needed,
             )  # fmt: skip
             if np.all(needed <= np.diff(self._room)):

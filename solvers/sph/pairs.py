@@ -23,8 +23,13 @@ ALONE = np.int64(0x7E37E43C8800759C)  # the bits of 1e300: the squared distance 
 
 
 @kernel
-def velocity_gradient(i0, i1, first, count, rows, x, y, z, u, v, w, volume, h, inverse_h2, scale, line, gradient):
-    """grad v_i = sum_j V_j (v_j - v_i) (x) grad_i W_ij ([T] 4.6.1.13), with the positions that are handed in."""
+def velocity_gradient(
+    i0, i1, first, count, rows, x, y, solid, z, u, v, w, volume, h, inverse_h2, scale, line, gradient
+):
+    """grad v_i = sum_j V_j (v_j - v_i) (x) grad_i W_ij ([T] 4.6.1.13), with the positions that are handed in.
+
+    solid: None in the plane, where z and w are not looked at.
+    """
     for i in range(i0, i1):
         xi = x[i]
         yi = y[i]
@@ -34,7 +39,7 @@ def velocity_gradient(i0, i1, first, count, rows, x, y, z, u, v, w, volume, h, i
         uy = 0.0
         vx = 0.0
         vy = 0.0
-        if z is not None:
+        if solid is not None:
             zi = z[i]
             wi = w[i]
             uz = 0.0
@@ -50,14 +55,14 @@ def velocity_gradient(i0, i1, first, count, rows, x, y, z, u, v, w, volume, h, i
             dx = xi - x[j]
             dy = yi - y[j]
             r2 = dx * dx + dy * dy
-            if z is not None:
+            if solid is not None:
                 dz = zi - z[j]
                 r2 += dz * dz
             if h is not None:
                 mean = hi + 0.5 * h[j]
                 ih2 = 1.0 / (mean * mean)
                 factor = scale * ih2 * ih2
-                if z is not None:
+                if solid is not None:
                     factor *= mean * ih2
                 if line is not None:
                     factor *= mean
@@ -75,7 +80,7 @@ def velocity_gradient(i0, i1, first, count, rows, x, y, z, u, v, w, volume, h, i
             uy += du * dy
             vx += dv * dx
             vy += dv * dy
-            if z is not None:
+            if solid is not None:
                 dz *= factor
                 dw = w[j] - wi
                 uz += du * dz
@@ -83,7 +88,7 @@ def velocity_gradient(i0, i1, first, count, rows, x, y, z, u, v, w, volume, h, i
                 wx += dw * dx
                 wy += dw * dy
                 wz += dw * dz
-        if z is not None:
+        if solid is not None:
             gradient[0, i] = ux
             gradient[1, i] = uy
             gradient[2, i] = uz

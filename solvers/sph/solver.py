@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from ..errors import Diverged
 from ..frame import Frame
-from ..jit import set_threads
 from ..materials import PLASTIC_STRAIN, sound_speed, state_rows
-from ..neighbours import FAR, Cells, NeighbourList, blocks
+from ..neighbours import FAR, Cells, NeighbourList
+from ..threads import available, run
 from . import pairs, step
 from .problem import STEP_OPTIONS, Problem
 from .smoothing import SUPPORT, normaliser
@@ -36,7 +36,7 @@ class Solver:
         self.end_time = problem.end_time
         self.builds = 0
         n = self.n = len(problem.x)
-        self.threads = set_threads(1 if n < SMALL else threads)
+        self.threads = 1 if n < SMALL else max(1, min(threads or available(), available()))
         self._uniform_h = bool(np.all(problem.h == problem.h[0]))
         self._uniform_mass = bool(np.all(problem.mass == problem.mass[0]))
         self._radius = SUPPORT * float(problem.h.max())
@@ -45,8 +45,8 @@ class Solver:
         self._progress = np.zeros(step.PROGRESS)
         self._list = NeighbourList(n)
         self._others = NeighbourList(n)
-        self._block = np.zeros((blocks(n), 3))
-        self._square = np.zeros((blocks(n), 8))
+        self._reduced = np.zeros((self.threads, 8))  # a cache line each
+        self._square = np.zeros((self.threads, 8))
         self._laws = tuple(b.law for b in problem.bodies)
         self._numbers = self._make_numbers()
         self._fill_state()
@@ -167,8 +167,11 @@ class Solver:
         solid = self.problem.dimension == 3
         potential = self.problem.potential
         return int(
-            step.advance(
+            run(
+                step.advance,
+                self.threads,
                 self.n,
+                True if solid else None,
                 a.z if solid else None,
                 None if self._uniform_h else a.h,
                 None if self._uniform_mass else a.mass,
@@ -183,7 +186,7 @@ class Solver:
                 float(until),
                 steps,
                 (0.5 * self._skin) ** 2,
-            )
+            )[0]
         )
 
     def _arrays(self) -> Arrays:
@@ -221,7 +224,7 @@ class Solver:
             c_first=self._others.first,
             c_count=self._others.count,
             c_rows=self._others.rows,
-            block=self._block,
+            reduced=self._reduced,
             square=self._square,
         )
 
@@ -239,11 +242,11 @@ class Solver:
         h = None if self._uniform_h else s.row("h")
         radius = self._radius if h is None else 0.5 * self._radius
         group = s.material if self.problem.potential else None
-        self._list.build(cells, x, y, z, radius=radius, skin=self._skin, h=h, group=group)
+        self._list.build(cells, x, y, z, radius=radius, skin=self._skin, h=h, group=group, threads=self.threads)
         if self.problem.potential:
-            self._others.build(cells, x, y, z, radius=radius, skin=self._skin, h=h, group=group, other=True)
+            self._others.build(cells, x, y, z, radius=radius, skin=self._skin, h=h, group=group, other=True, threads=self.threads)
         if (longest := int(self._list.count.max())) > self._square.shape[1]:
-            self._square = np.zeros((blocks(n), longest + 64))
+            self._square = np.zeros((self.threads, longest + 64))
         self.builds += 1
 
     def _broken(self) -> Diverged:

@@ -17,8 +17,8 @@ class Arrays(NamedTuple):
     half step before; ax..: accelerations; stress (6 or 4: xx yy zz xy (yz zx)); gradient: of the velocity; s: (sigma - q I)/rho^2;
     density, volume m/rho, mass, h, energy, dissipated (per unit mass); nearest: squared distance; cx..: contact acceleration;
     contact_work: work of contact on a particle; state: the laws' history; id, material, fixed (bits x y z): integers;
-    first, count, rows: the neighbour list; c_first, c_count, c_rows: the list of other bodies; block: reductions;
-    square: scratch for a row of squared distances, one a block.
+    first, count, rows: the neighbour list; c_first, c_count, c_rows: the list of other bodies; reduced,
+    square: (threads, .) what each thread found, and its scratch for a row of squared distances.
     """
 
     x: Any
@@ -60,7 +60,7 @@ class Arrays(NamedTuple):
     c_first: Any
     c_count: Any
     c_rows: Any
-    block: Any
+    reduced: Any
     square: Any
 
 

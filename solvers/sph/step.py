@@ -15,10 +15,10 @@ import math
 import numpy as np
 from numba.extending import overload
 
-from ..jit import kernel, parallel_kernel, prange
+from ..jit import kernel
 from ..materials.law import JIT_OPTIONS, rotate_state, stress_update
 from ..materials.rotation import spin_rotation
-from ..neighbours import BLOCK
+from ..threads import barrier, share
 from . import pairs
 
 # entries of `progress`, the loop's own memory
@@ -34,10 +34,10 @@ COLLAPSE = 1e-7  # a step this small beside the first one will not recover
 
 
 @kernel
-def constitutive(i0, i1, z, number, law, dt, half_spin, arrays, numbers):
+def constitutive(i0, i1, z, number, law, dt, arrays, numbers):
     """Density, rotation, stress, viscosity and energy of the particles of one material in a block.
 
-    half_spin: rotate by half the spin, as the original program does.
+    The original program rotates by half the spin.
     """
     q = numbers.viscous[number]
     material = arrays.material
@@ -75,7 +75,7 @@ def constitutive(i0, i1, z, number, law, dt, half_spin, arrays, numbers):
             o_xy = stress[3, i]
             o_yz = 0.0
             o_zx = 0.0
-        if half_spin:
+        if numbers.original:
             w_xy *= 0.5
             w_yz *= 0.5
             w_zx *= 0.5
@@ -118,16 +118,16 @@ def constitutive(i0, i1, z, number, law, dt, half_spin, arrays, numbers):
 
 
 @kernel
-def kick_and_drift(b, i1, z, cx, kick, dt, arrays):
+def kick_and_drift(i0, i1, z, cx, kick, dt, arrays):
     """v += a kick, x += v dt; directions in the mask `fixed` (bits x y z) do not move.
 
-    Into block[b]: the largest squared distance from where the list was built; the index of a particle whose velocity is not a
+    Returns the largest squared distance from where the list was built, and the index of a particle whose velocity is not a
     number, or so large that its square is not (-1: none).
     """
     x, y, u, v = arrays.x, arrays.y, arrays.u, arrays.v
     largest = 0.0
     bad = np.int64(-1)
-    for i in range(b * BLOCK, i1):
+    for i in range(i0, i1):
         fixed = arrays.fixed[i]
         if fixed & 1:
             arrays.ax[i] = 0.0
@@ -160,8 +160,7 @@ def kick_and_drift(b, i1, z, cx, kick, dt, arrays):
         if not speed2 < 1e300:
             bad = i
         largest = max(largest, moved2)
-    arrays.block[b, 0] = largest
-    arrays.block[b, 1] = bad
+    return largest, float(bad)
 
 
 @kernel
@@ -195,60 +194,13 @@ def critical_step(i0, i1, z, numbers, arrays):
     return least
 
 
-@parallel_kernel
-def _drift(n, z, cx, kick, dt, arrays):
-    for b in prange((n + BLOCK - 1) // BLOCK):
-        kick_and_drift(b, min(n, b * BLOCK + BLOCK), z, cx, kick, dt, arrays)
-
-
-@parallel_kernel
-def _strain(n, z, h, line, arrays, numbers):
-    for b in prange((n + BLOCK - 1) // BLOCK):
-        if z is not None:
-            pairs.velocity_gradient(
-                b * BLOCK, min(n, b * BLOCK + BLOCK), arrays.first, arrays.count, arrays.rows,
-                arrays.x_half, arrays.y_half, arrays.z_half, arrays.u, arrays.v, arrays.w,
-                arrays.volume, h, numbers.inverse_h2, numbers.scale, line, arrays.gradient,
-            )  # fmt: skip
-        else:
-            pairs.velocity_gradient(
-                b * BLOCK, min(n, b * BLOCK + BLOCK), arrays.first, arrays.count, arrays.rows,
-                arrays.x_half, arrays.y_half, None, arrays.u, arrays.v, None,
-                arrays.volume, h, numbers.inverse_h2, numbers.scale, line, arrays.gradient,
-            )  # fmt: skip
-
-
-@parallel_kernel
-def _stress(n, z, number, law, dt, half_spin, arrays, numbers):
-    for b in prange((n + BLOCK - 1) // BLOCK):
-        constitutive(b * BLOCK, min(n, b * BLOCK + BLOCK), z, number, law, dt, half_spin, arrays, numbers)
-
-
-def _each_law(laws, number, n, z, dt, half_spin, arrays, numbers):
-    """`_stress` for every material's law; a tuple of different types is unrolled by recursion."""
-    raise NotImplementedError("called from jitted code only")
-
-
-@overload(_each_law, jit_options=JIT_OPTIONS)
-def _unrolled(laws, number, n, z, dt, half_spin, arrays, numbers):
-    if len(laws) == 0:
-        return lambda laws, number, n, z, dt, half_spin, arrays, numbers: None
-
-    def each(laws, number, n, z, dt, half_spin, arrays, numbers):
-        _stress(n, z, number, laws[0], dt, half_spin, arrays, numbers)
-        _each_law(laws[1:], number + 1, n, z, dt, half_spin, arrays, numbers)
-
-    return each
-
-
 @kernel
-def force_block(b, i1, z, h, mass, nearest, line, cx, potential, dt, arrays, numbers):
-    """Accelerations of a block, and its critical step into block[b]."""
-    i0 = b * BLOCK
+def force(i0, i1, thread, z, h, mass, nearest, line, cx, potential, dt, arrays, numbers):
+    """Accelerations of a range of particles; returns their critical step."""
     pairs.momentum(
         i0, i1, arrays.first, arrays.count, arrays.rows, arrays.x, arrays.y, z, arrays.s, mass, h,
         numbers.inverse_h2, numbers.force_scale, line, numbers.body_x, numbers.body_y, numbers.body_z,
-        arrays.ax, arrays.ay, arrays.az, nearest, arrays.square[b],
+        arrays.ax, arrays.ay, arrays.az, nearest, arrays.square[thread],
     )  # fmt: skip
     if potential is not None:
         pairs.contact_acceleration(
@@ -261,86 +213,106 @@ def force_block(b, i1, z, h, mass, nearest, line, cx, potential, dt, arrays, num
             if z is not None:
                 power += arrays.cz[i] * arrays.w[i]
             arrays.contact_work[i] += 0.5 * dt * arrays.mass[i] * power
-    arrays.block[b, 2] = critical_step(i0, i1, z, numbers, arrays)
+    return critical_step(i0, i1, z, numbers, arrays)
 
 
-@parallel_kernel
-def _force(n, z, h, mass, nearest, line, cx, potential, dt, arrays, numbers):
-    for b in prange((n + BLOCK - 1) // BLOCK):
-        force_block(
-            b, min(n, b * BLOCK + BLOCK), z, h, mass, nearest, line, cx, potential, dt, arrays, numbers
-        )
+def _each_law(laws, number, i0, i1, z, dt, arrays, numbers):
+    """`constitutive` for every body's law; a tuple of different types is unrolled by recursion."""
+    raise NotImplementedError("called from jitted code only")
 
 
-@kernel
-def volume_block(i0, i1, arrays):
-    """m/rho; apart from the stress, since the strain of all particles needs the old volumes."""
-    for i in range(i0, i1):
-        arrays.volume[i] = arrays.mass[i] / arrays.density[i]
+@overload(_each_law, jit_options=JIT_OPTIONS)
+def _unrolled(laws, number, i0, i1, z, dt, arrays, numbers):
+    if len(laws) == 0:
+        return lambda laws, number, i0, i1, z, dt, arrays, numbers: None
 
+    def each(laws, number, i0, i1, z, dt, arrays, numbers):
+        constitutive(i0, i1, z, number, laws[0], dt, arrays, numbers)
+        _each_law(laws[1:], number + 1, i0, i1, z, dt, arrays, numbers)
 
-@parallel_kernel
-def _volumes(n, arrays):
-    for b in prange((n + BLOCK - 1) // BLOCK):
-        volume_block(b * BLOCK, min(n, b * BLOCK + BLOCK), arrays)
+    return each
 
 
 @kernel
-def evaluate(n, z, h, mass, nearest, line, cx, potential, arrays, numbers, laws, progress):
-    """Strain, stress and force at the positions reached: leaves the state synchronised and the next step known."""
-    dt = progress[LAST]
-    if dt > 0.0:
-        _strain(n, z, h, line, arrays, numbers)
-        _each_law(laws, 0, n, z, dt, numbers.original, arrays, numbers)
-        _volumes(n, arrays)
-    _force(n, z, h, mass, nearest, line, cx, potential, dt, arrays, numbers)
-    least = np.inf
-    for b in range((n + BLOCK - 1) // BLOCK):
-        least = min(least, arrays.block[b, 2])
-    step = numbers.step_factor * least
-    if dt > 0.0:
-        step = min(step, GROWTH * dt)
-    progress[NEXT] = step
-    progress[PENDING] = 0.0
+def advance(
+    thread, threads, sync, n, solid, z, h, mass, nearest, line, cx, potential, arrays, numbers, laws, progress, until, steps,
+    reach2,
+):  # fmt: skip
+    """Take up to `steps` steps towards `until`, each thread for its own range; returns why it stopped.
 
-
-@kernel
-def advance(n, z, h, mass, nearest, line, cx, potential, arrays, numbers, laws, progress, until, steps, reach2):
-    """Take up to `steps` steps towards `until`; returns why it stopped.
-
-    reach2: squared half skin of the list. Times are met exactly, except where the original program is followed: there
-    `until` is a label, the time of the step to come (see `solver`).
+    Every thread decides alike, from the same numbers. reach2: squared half skin of the list. Times are met exactly, except
+    where the original program is followed: there `until` is a label, the time of the step to come (see `solver`).
     """
-    if progress[PENDING] > 0.0:
-        evaluate(n, z, h, mass, nearest, line, cx, potential, arrays, numbers, laws, progress)
-    for _ in range(steps):
-        dt = progress[NEXT]
-        left = until - progress[TIME]
+    i0, i1 = share(n, thread, threads)
+    time = progress[TIME]
+    last = progress[LAST]
+    dt = progress[NEXT]
+    first = progress[FIRST]
+    done = 0
+    pending = progress[PENDING] > 0.0
+    reason = PAUSED
+    barrier(sync, threads)  # all have read what the first will write
+    while True:
+        if pending:
+            if last > 0.0:
+                pairs.velocity_gradient(
+                    i0, i1, arrays.first, arrays.count, arrays.rows, arrays.x_half, arrays.y_half, solid,
+                    arrays.z_half, arrays.u, arrays.v, arrays.w, arrays.volume, h, numbers.inverse_h2,
+                    numbers.scale, line, arrays.gradient,
+                )  # fmt: skip
+                barrier(sync, threads)  # the strain of all particles needs the old volumes
+                _each_law(laws, 0, i0, i1, z, last, arrays, numbers)
+                for i in range(i0, i1):
+                    arrays.volume[i] = arrays.mass[i] / arrays.density[i]
+                barrier(sync, threads)
+            arrays.reduced[thread, 2] = force(
+                i0, i1, thread, z, h, mass, nearest, line, cx, potential, last, arrays, numbers
+            )
+            barrier(sync, threads)
+            dt = numbers.step_factor * arrays.reduced[:threads, 2].min()
+            if last > 0.0:
+                dt = min(dt, GROWTH * last)
+            pending = False
+        if done == steps:
+            break
+        left = until - time
         if numbers.original:
             left -= dt
         if left <= 0.0:
-            return REACHED
-        if not dt > COLLAPSE * progress[FIRST]:
-            return COLLAPSED
+            reason = REACHED
+            break
+        if not dt > COLLAPSE * first:
+            reason = COLLAPSED
+            break
+        now = dt
         landed = False
         if not numbers.original:
             whole = math.ceil(left / dt * (1.0 - 1e-9))
             if whole <= LANDING:
-                dt = left / whole
+                now = left / whole
                 landed = whole == 1
-        kick = 0.5 * (progress[LAST] + dt)
-        _drift(n, z, cx, kick, dt, arrays)
-        moved = 0.0
-        for b in range((n + BLOCK - 1) // BLOCK):
-            moved = max(moved, arrays.block[b, 0])
-            if arrays.block[b, 1] >= 0.0:
-                progress[BAD] = arrays.block[b, 1]
-                return BROKEN
-        progress[TIME] = until if landed else progress[TIME] + dt
-        progress[LAST] = dt
-        progress[STEPS] += 1.0
+        moved, bad = kick_and_drift(i0, i1, z, cx, 0.5 * (last + now), now, arrays)
+        arrays.reduced[thread, 0] = moved
+        arrays.reduced[thread, 1] = bad
+        barrier(sync, threads)
+        moved = arrays.reduced[:threads, 0].max()
+        bad = arrays.reduced[:threads, 1].max()
+        time = until if landed else time + now
+        last = now
+        done += 1
+        pending = True
+        if bad >= 0.0:
+            reason = BROKEN
+            break
         if moved > reach2:
-            progress[PENDING] = 1.0
-            return REBUILD
-        evaluate(n, z, h, mass, nearest, line, cx, potential, arrays, numbers, laws, progress)
-    return PAUSED
+            reason = REBUILD
+            break
+    if thread == 0:
+        progress[TIME] = time
+        progress[LAST] = last
+        progress[NEXT] = dt
+        progress[STEPS] += done
+        progress[PENDING] = 1.0 if pending else 0.0
+        if reason == BROKEN:
+            progress[BAD] = bad
+    return reason
