@@ -199,6 +199,13 @@ def test_velocity_cards_of_a_coupled_deck_run_on(model, faults: Faults, deck: De
     assert (m.velocity_overrun, len(m.particles.velocity)) == (8, 4)
 
 
+def test_an_acceleration_is_no_velocity_card(model, deck) -> None:
+    text = deck(("    0    2    0    0    0    0    0    0", "    0    2    0    0    0    1    0    0"))
+    m = model(text + f"{100000000000.0:20}{0.0:20}{0.0:20}\n")  # its first eight columns are a 10
+    assert m.particle_control.base_acceleration == (1e11, 0.0, 0.0)
+    assert m.velocity_overrun == 0
+
+
 def test_cards_left_over_are_said(model, deck) -> None:
     assert "37: 1 cards left over" in model(deck(end="   -1    1\n")).warnings[0]
 

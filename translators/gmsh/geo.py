@@ -39,15 +39,23 @@ def mesh_geo(path: Path | str, *, numbers: Mapping[str, float] | None = None) ->
     numbers: values of the script's DefineConstant parameters by name, as gmsh's option -setnumber.
     Raises InputError with gmsh's messages; ImportError, saying what to install, where gmsh cannot be loaded.
     """
-    read_bytes(path)
+    data = read_bytes(path)
+    if not data.endswith(b"\n"):
+        last = data.rsplit(b"\n", 1)[-1].decode("utf-8", "replace").strip()
+        line = 1 + data.count(b"\n")
+        raise InputError(
+            [Fault(str(path), line, 1, "gmsh skips a last line without an end", last, "a newline after it")]
+        )
     gmsh = _gmsh()
-    options = [word for name, value in (numbers or {}).items() for word in ("-setnumber", name, repr(float(value)))]
-    gmsh.initialize(["gmsh", *options], readConfigFiles=False, interruptible=False)
+    gmsh.initialize(readConfigFiles=False, interruptible=False)
     try:
+        # the option -setnumber would outlive gmsh.finalize, and gmsh.open would forget the parser's numbers
+        for name, value in (numbers or {}).items():
+            gmsh.parser.setNumber(name, [float(value)])
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.logger.start()
         try:
-            gmsh.open(str(path))
+            gmsh.merge(str(path))
             if not len(gmsh.model.mesh.getNodes()[0]):
                 gmsh.model.mesh.generate(gmsh.model.getDimension())
         except Exception as error:  # gmsh raises nothing narrower
@@ -61,6 +69,7 @@ def mesh_geo(path: Path | str, *, numbers: Mapping[str, float] | None = None) ->
         gmsh.option.setNumber("Mesh.Binary", 1)
         gmsh.write(str(target))
     finally:
+        gmsh.parser.clear()
         gmsh.finalize()
     return target
 

@@ -65,7 +65,7 @@ def elements_22(mesh: Mesh, numbers: Numbers, count: int) -> None:
     if numbers.binary:
         while count > 0:
             kind, size, tags = (int(value) for value in numbers.ints(3))
-            element = _element(kind, numbers)
+            element = _element(kind, numbers, -3)
             width = 1 + tags + element.nodes
             rows = numbers.ints(max(size, 1) * width).reshape(-1, width)
             mesh.runs.append(_run_22(element, rows[:, :1], rows[:, 1:]))
@@ -73,7 +73,7 @@ def elements_22(mesh: Mesh, numbers: Numbers, count: int) -> None:
         return
     while count > 0:
         kind, tags = (int(value) for value in numbers.ahead(3)[1:])
-        element = _element(kind, numbers)
+        element = _element(kind, numbers, 1)
         width = 3 + tags + element.nodes
         size = _equal_rows(numbers.ahead_all(), width, count)
         rows = numbers.ints(max(size, 1) * width).reshape(-1, width)
@@ -133,18 +133,20 @@ def elements_41(mesh: Mesh, numbers: Numbers) -> None:
     for _ in range(int(numbers.sizes(4)[0])):
         dimension, entity, kind = numbers.ints(3).tolist()
         count = int(numbers.sizes(1)[0])
-        element = _element(kind, numbers)
+        element = _element(kind, numbers, -2)
         rows = numbers.sizes(count * (1 + element.nodes)).reshape(count, 1 + element.nodes)
         groups = mesh.groups_of_entity.get((dimension, entity)) or [NO_GROUP]
         full = np.full(count, groups[0], np.int64)
         mesh.runs.append(Run(element, rows[:, 0], rows[:, 1:], full, np.full(count, entity), tuple(groups[1:])))
 
 
-def _element(kind: int, numbers: Numbers) -> Element:
+def _element(kind: int, numbers: Numbers, offset: int) -> Element:
+    """The element of a gmsh type; a fault at the number `offset` numbers from the one that is read next."""
     if kind not in BY_GMSH:
         full_pyramid = "13-node pyramids (gmsh option Mesh.SecondOrderIncomplete = 1)"
         numbers.fail(
             f"elements of gmsh type {kind} are not known",
             full_pyramid if kind == _PYRAMID14 else "first and second order elements",
+            offset,
         )
     return BY_GMSH[kind]

@@ -61,14 +61,17 @@ class _Deck:
             self._extra(particles, extra)
         sections = Sections(self.cards, model, self.control, self.paired)
         sections.history(control["history"]["thnode"], control["history"]["transducers"])
+        flags = [options[f"nthp{axis}"] for axis in "xyz"] if self.version == 2 else [0, 0, 0]
+        contact = self.version == 2 and bool(options["contact"])
         if self.version == 1 or control["init_v"]["init_v"]:
-            sections.velocities(particles)
+            after = 2 * bool(options["symmetry"]) + contact * (1 + first["nummat"]) + any(flags)
+            sections.velocities(particles, after)
         if options["symmetry"]:
             sections.planes(self.version)
-        if options["contact"] and self.version == 2:
+        if contact:
             sections.contact()
         if self.version == 2:
-            sections.base_acceleration([options[f"nthp{axis}"] for axis in "xyz"], options)
+            sections.base_acceleration(flags, options)
         interpolation.check("kernel", interpolation["kernel"] in (0, 1), "no such kernel", "1 (cubic B-spline)")
         self.cards.faults.stop()
         if self.cards.left:

@@ -38,16 +38,20 @@ class Sections:
         columns = [block[name].tolist() for name in (*"xyz"[:dimension], "material")]
         self.control.transducers.extend(zip(*columns, strict=True))
 
-    def velocities(self, particles: Particles) -> None:
+    def velocities(self, particles: Particles, after: int) -> None:
         """Velocity cards: the first is particle 1's, a gap is filled where the card after it has the same velocity.
 
         The section has no length of its own: it is the run of increasing particle numbers, and a coupled deck's
-        runs past the last particle.
+        runs past the last particle. after: how many cards the control cards ask for behind it; one of them may begin
+        with what looks like the next particle number (an acceleration of 12 digits).
         """
         count, cards = len(particles), self.cards
-        block = cards.block(
-            layouts.VELOCITY, max(cards.increasing_run(layouts.VELOCITY.fields["number"]), 1), "velocity card"
-        )
+        number = layouts.VELOCITY.fields["number"]
+        run = max(cards.increasing_run(number), 1)
+        short = min(run, cards.left - after)
+        if 0 < short < run and cards.peek(layouts.VELOCITY, short)["number"][-1] >= count:
+            run = short
+        block = cards.block(layouts.VELOCITY, run, "velocity card")
         ids = block["number"]
         velocity = np.column_stack([block["vx"], block["vy"], block["vz"]])
         velocity[:, self.control.dimension :] = 0.0
@@ -65,8 +69,8 @@ class Sections:
                 )
         last = int(ids[-1])
         if last < count:
-            after = cards.card(layouts.VELOCITY, f"the velocity cards up to particle {count}")
-            after.fault("number", "velocity card out of order", f"a particle number from {last + 1} to {count}")
+            following = cards.card(layouts.VELOCITY, f"the velocity cards up to particle {count}")
+            following.fault("number", "velocity card out of order", f"a particle number from {last + 1} to {count}")
             return
         jump = np.flatnonzero((np.diff(ids) > 1) & (velocity[1:] != velocity[:-1]).any(axis=1)) + 1
         for i in jump[:20].tolist():

@@ -1,0 +1,100 @@
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from zrno.translators import InputError, Model, Report, read, write
+from zrno.translators.formats import find
+
+
+def test_importing_loads_nothing_heavy() -> None:
+    code = (
+        "import sys, zrno.translators as t; t.read, t.write, t.to_particles, t.help_settings\n"
+        "heavy = {'gmsh', 'meshio', 'vtk', 'vtkmodules', 'numba', 'scipy', 'h5py', 'matplotlib', 'pyvista', 'yaml'}\n"
+        "print(*(heavy & set(sys.modules)))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.strip() == ""
+
+
+def test_the_package_alone_loads_no_numpy() -> None:
+    code = "import sys, zrno.translators; sys.exit('numpy' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("a.k", "LS-DYNA decks are not read yet"),
+        ("a.dyn", "LS-DYNA decks are not read yet"),
+        ("a.neu", "neutral files (.neu) are not read yet"),
+        ("a.dat", "PAK decks are not read yet"),
+    ],
+)
+def test_formats_to_come_say_so(faults, tmp_path: Path, name: str, said: str) -> None:
+    assert faults(read, "*KEYWORD\n", name=name)[0].startswith(f"{name}:1:1: error: {said}; expected one of .mcm, .msh")
+    with pytest.raises(InputError, match="no such file"):
+        read(tmp_path / "none" / name)
+
+
+def test_a_mesh_under_another_name(tmp_path: Path, shared: Path) -> None:
+    (tmp_path / "mesh.neu").write_bytes((shared / "samples/msh/gridap_square.msh").read_bytes())
+    assert find(tmp_path / "mesh.neu").name == "msh"
+    assert read(tmp_path / "mesh.neu").format == "msh"
+
+
+def test_targets_that_are_not_written(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"not written; expected one of \.mcm, \.vtu"):
+        write(Model(), tmp_path / "a.stl")
+
+
+def test_vtu_goes_out_and_comes_back(tmp_path: Path, shared: Path) -> None:
+    model = read(shared / "samples/msh/gen_slab_22a_o2.msh")
+    report = write(model, tmp_path / "a.vtu")
+    assert [item.what for item in report.dropped] == ["node sets"]
+    again = read(tmp_path / "a.vtu")
+    assert np.array_equal(again.xyz, model.xyz)
+    assert again.element_counts() == model.element_counts()
+    for block, other in zip(model.blocks, again.blocks, strict=True):
+        assert np.array_equal(block.nodes, other.nodes)
+        assert np.array_equal(block.part, other.part)
+    assert list(again.parts) == [1]
+    assert [path.name for path in tmp_path.iterdir()] == ["a.vtu"]
+
+
+def test_vtu_of_particles(tmp_path: Path, deck) -> None:
+    (tmp_path / "a.mcm").write_text(deck())
+    assert not write(read(tmp_path / "a.mcm"), tmp_path / "a.vtu")
+    assert read(tmp_path / "a.vtu").element_counts() == {"point1": 4}
+    with pytest.raises(ValueError, match="neither elements nor particles"):
+        write(Model(), tmp_path / "b.vtu")
+
+
+def test_what_meshio_reads(tmp_path: Path) -> None:
+    (tmp_path / "a.off").write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+    model = read(tmp_path / "a.off")
+    assert (model.element_counts(), model.dimension, list(model.parts)) == ({"tri3": 1}, 2, [1])
+
+
+@pytest.mark.parametrize("name", ["a.off", "a.xyzzy", "a.stl", "noextension"])
+def test_what_meshio_cannot_read(faults, name: str) -> None:
+    assert "meshio cannot read the file" in faults(read, "nonsense\n", name=name)[0]
+
+
+def test_a_report() -> None:
+    report = Report()
+    assert not report
+    report.drop("springs", 0, "nowhere")
+    assert not report
+    report.approximate("curves", 2, "as tables")
+    other = Report()
+    other.drop("springs", 3, "no place")
+    report.extend(other)
+    assert report
+    assert report.as_dict() == {
+        "approximated": [{"what": "curves", "count": 2, "where": "as tables"}],
+        "dropped": [{"what": "springs", "count": 3, "where": "no place"}],
+    }
