@@ -44,7 +44,9 @@ class Console:
         """The result: `data` as one JSON object with --json, else `text`. Once a command."""
         _answers.append(data)
         if self.json:
-            print(json.dumps(data, default=str))
+            # nan and infinities are not JSON: they become null
+            plain = json.loads(json.dumps(data, default=str), parse_constant=lambda _: None)
+            print(json.dumps(plain))
         elif text:
             print(text)
 
