@@ -96,7 +96,7 @@ def read_bytes(path: Path | str) -> bytes:
             "no such file" if isinstance(error, FileNotFoundError) else (error.strerror or "cannot be read").lower()
         )
         raise InputError([Fault(str(path), 1, 1, reason, expected="a readable file")]) from error
-    if not data.strip():
+    if not data[:4096].strip() and not data.strip():
         raise InputError([Fault(str(path), 1, 1, "the file is empty", expected="a mesh or a deck")])
     return data
 

@@ -52,14 +52,17 @@ class Numbers:
         records: NDArray[Any] = np.frombuffer(raw, kind)
         return records["tag"].astype(np.int64), records["x"].astype(np.float64)
 
-    def ahead(self, count: int) -> NDArray[np.float64]:
-        """The next numbers of a text section, which stay unread."""
-        values = self._take(count, "f8")
-        self._at -= count
+    def ahead(self, count: int) -> NDArray[Any]:
+        """The next numbers, of a binary section integers of 4 bytes, which stay unread."""
+        at = self._at
+        values = self._take(count, "i4")
+        self._at = at
         return values
 
-    def ahead_all(self) -> NDArray[np.float64]:
-        """All numbers of a text section that are left, which stay unread."""
+    def ahead_all(self) -> NDArray[Any]:
+        """All numbers that are left, of a binary section integers of 4 bytes, which stay unread."""
+        if self.binary:
+            return np.frombuffer(self._data, self.binary + "i4", max(self._end - self._at, 0) // 4, self._at)
         return self._values[self._at :]
 
     def fail(self, message: str, expected: str = "", offset: int = 0) -> None:

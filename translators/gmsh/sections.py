@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from zrno.translators.elements import BY_GMSH, Element
 from zrno.translators.gmsh.numbers import Numbers
@@ -64,10 +66,13 @@ def elements_22(mesh: Mesh, numbers: Numbers, count: int) -> None:
     """$Elements of version 2.2 behind its count: rows of id, type, tags, nodes; binary: blocks of equal rows."""
     if numbers.binary:
         while count > 0:
-            kind, size, tags = (int(value) for value in numbers.ints(3))
-            element = _element(kind, numbers, -3)
+            kind, size, tags = (int(value) for value in numbers.ahead(3))
+            element = _element(kind, numbers, 0)
+            # gmsh gives each element a block of its own: equal ones are taken together
             width = 1 + tags + element.nodes
-            rows = numbers.ints(max(size, 1) * width).reshape(-1, width)
+            block = 3 + max(size, 1) * width
+            many = _equal_rows(numbers.ahead_all(), block, -(-count // max(size, 1)), slice(0, 3))
+            rows = numbers.ints(max(many, 1) * block).reshape(-1, block)[:, 3:].reshape(-1, width)
             mesh.runs.append(_run_22(element, rows[:, :1], rows[:, 1:]))
             count -= len(rows)
         return
@@ -75,7 +80,7 @@ def elements_22(mesh: Mesh, numbers: Numbers, count: int) -> None:
         kind, tags = (int(value) for value in numbers.ahead(3)[1:])
         element = _element(kind, numbers, 1)
         width = 3 + tags + element.nodes
-        size = _equal_rows(numbers.ahead_all(), width, count)
+        size = _equal_rows(numbers.ahead_all(), width, count, slice(1, 3))
         rows = numbers.ints(max(size, 1) * width).reshape(-1, width)
         mesh.runs.append(_run_22(element, rows[:, :1], rows[:, 3:]))
         count -= len(rows)
@@ -89,13 +94,13 @@ def _run_22(element: Element, ids: Ints, rows: Ints) -> Run:
     return Run(element, ids[:, 0], nodes, groups, tags[:, 1] if tags.shape[1] > 1 else none)
 
 
-def _equal_rows(values: Floats, width: int, limit: int) -> int:
-    """How many rows of this width, at most `limit`, begin `values` with the type and tag count of the first."""
-    rows = values[: min(limit, len(values) // width) * width].reshape(-1, width)
+def _equal_rows(values: NDArray[Any], width: int, limit: int, head: slice) -> int:
+    """How many rows of this width, at most `limit`, begin `values` with the `head` of the first."""
+    rows = values[: min(limit, len(values) // width) * width].reshape(-1, width)[:, head]
     size = min(1, len(rows))
     while size < len(rows):
         until = min(2 * size, len(rows))
-        same = (rows[size:until, 1:3] == rows[0, 1:3]).all(axis=1)
+        same = (rows[size:until] == rows[0]).all(axis=1)
         if not same.all():
             return size + int(np.argmin(same))
         size = until
