@@ -15,6 +15,7 @@ from typing import Any
 
 import llvmlite.binding as llvm
 import numba
+from numba.core import event
 
 # A NaN must stay a NaN, so that the step that made it can be named: no nnan, no ninf.
 FASTMATH = {"reassoc", "contract", "nsz"}
@@ -72,3 +73,31 @@ Function = Callable[..., Any]
 def kernel(function: Function) -> Any:
     """Compile a function of arrays and scalars, cached on disk; NaN is kept, division by zero gives inf."""
     return numba.njit(cache=True, fastmath=FASTMATH, error_model="numpy", nogil=True)(function)
+
+
+class _CompileClock(event.Listener):
+    """Adds up the seconds that the outermost compilations take."""
+
+    def __init__(self) -> None:
+        self.seconds = 0.0
+        self._depth = 0
+        self._since = 0.0
+
+    def on_start(self, event: Any) -> None:
+        if self._depth == 0:
+            self._since = time.perf_counter()
+        self._depth += 1
+
+    def on_end(self, event: Any) -> None:
+        self._depth -= 1
+        if self._depth == 0:
+            self.seconds += time.perf_counter() - self._since
+
+
+_clock = _CompileClock()
+event.register("numba:compile", _clock)
+
+
+def compile_seconds() -> float:
+    """Seconds that this process has spent compiling kernels."""
+    return _clock.seconds

@@ -108,7 +108,9 @@ def _gaps(value, radius, origin, size, shape, gap):
 
 
 @kernel
-def _fill_rows(i0, i1, n, x, y, z, h, reach, h_max, origin, size, shape, start, group, other, first, count, rows, at, end):
+def _fill_rows(
+    i0, i1, n, x, y, z, h, reach, h_max, origin, size, shape, start, group, other, first, count, rows, at, end
+):
     """Rows of neighbours of particles i0..i1 into rows[at:end]; returns the room that they need.
 
     h: None (the search radius is reach for all) or smoothing lengths (radius h_i + h_j + reach, the largest h being
@@ -166,7 +168,9 @@ def _fill_rows(i0, i1, n, x, y, z, h, reach, h_max, origin, size, shape, start, 
                 j1 = start[np.uint64(high[k])]
                 while j < j1:
                     if m + LANES > _CHUNK:
-                        total += _sift(i, m, candidates, x, y, z, h, reach, group, other, distance, rows, needed + total, end)
+                        total += _sift(
+                            i, m, candidates, x, y, z, h, reach, group, other, distance, rows, needed + total, end
+                        )
                         m = 0
                     for lane in range(LANES):  # a whole vector; what is too much is overwritten by the next range
                         candidates[np.uint64(m + lane)] = np.uint32(j) + lanes[lane]
@@ -189,7 +193,27 @@ def _fill_rows(i0, i1, n, x, y, z, h, reach, h_max, origin, size, shape, start, 
 
 @kernel
 def _fill(
-    thread, threads, sync, n, x, y, z, h, reach, h_max, origin, size, shape, start, group, other, first, count, rows, room, needed
+    thread,
+    threads,
+    sync,
+    n,
+    x,
+    y,
+    z,
+    h,
+    reach,
+    h_max,
+    origin,
+    size,
+    shape,
+    start,
+    group,
+    other,
+    first,
+    count,
+    rows,
+    room,
+    needed,
 ):
     b0, b1 = share(len(needed), thread, threads)
     for b in range(b0, b1):

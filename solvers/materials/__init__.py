@@ -14,4 +14,13 @@ def state_rows(law: Law) -> int:
     return {Elastic: 0, VonMisesIsotropic: 1, VonMisesMixed: 7}[type(law)]
 
 
-__all__ = ["PLASTIC_STRAIN", "Elastic", "Law", "VonMisesIsotropic", "VonMisesMixed", "sound_speed", "state_rows", "von_mises"]
+__all__ = [
+    "PLASTIC_STRAIN",
+    "Elastic",
+    "Law",
+    "VonMisesIsotropic",
+    "VonMisesMixed",
+    "sound_speed",
+    "state_rows",
+    "von_mises",
+]

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..bits import bits_of, of_bits
 from ..contact.potential import original_reference
 from ..jit import kernel
 from .smoothing import inverse_root, spline, spline_slope
@@ -107,12 +108,31 @@ def velocity_gradient(
 
 @kernel
 def momentum(
-    i0, i1, first, count, rows, x, y, z, s, mass, h, inverse_h2, scale, line, body_x, body_y, body_z, ax, ay, az,
-    nearest, square,
+    i0,
+    i1,
+    first,
+    count,
+    rows,
+    x,
+    y,
+    z,
+    s,
+    mass,
+    h,
+    inverse_h2,
+    scale,
+    line,
+    body_x,
+    body_y,
+    body_z,
+    ax,
+    ay,
+    az,
+    nearest,
 ):
     """a_i = sum_j m_j (s_i + s_j) . grad_i W_ij + g: the sum form that conserves momentum pair by pair.
 
-    nearest: None, or (n + 1,) the squared distance to the nearest listed particle; square is scratch of a row's length.
+    nearest: None, or (n + 1,) the squared distance to the nearest listed particle.
     """
     if z is not None:
         sxx = s[0]
@@ -141,6 +161,8 @@ def momentum(
             a2 = 0.0
         if h is not None:
             hi = 0.5 * h[i]
+        if nearest is not None:
+            least = ALONE
         row = rows[first[i] : first[i] + count[i]]
         for k in range(np.uint64(count[i])):
             j = row[k]
@@ -151,7 +173,7 @@ def momentum(
                 dz = zi - z[j]
                 r2 += dz * dz
             if nearest is not None:
-                square[k] = r2
+                least = min(least, bits_of(r2))
             if h is not None:
                 mean = hi + 0.5 * h[j]
                 ih2 = 1.0 / (mean * mean)
@@ -186,20 +208,33 @@ def momentum(
         if z is not None:
             az[i] = a2 + body_z
         if nearest is not None:
-            # squares are positive, so their bit patterns order as they do; a minimum of floats would not vectorise
-            least = ALONE
-            bits = square.view(np.int64)
-            for k in range(np.uint64(count[i])):
-                least = min(least, bits[k])
-            square[0] = 0.0
-            bits[0] = least
-            nearest[i] = square[0]
+            nearest[i] = of_bits(least)
 
 
 @kernel
 def contact_acceleration(
-    i0, i1, first, count, rows, x, y, z, mass, h, volume_exponent, normal, material, strength, exponent,
-    original, ax, ay, az, cx, cy, cz,
+    i0,
+    i1,
+    first,
+    count,
+    rows,
+    x,
+    y,
+    z,
+    mass,
+    h,
+    volume_exponent,
+    normal,
+    material,
+    strength,
+    exponent,
+    original,
+    ax,
+    ay,
+    az,
+    cx,
+    cy,
+    cz,
 ):
     """Adds the repulsive contact (`contact.potential`) to the acceleration, and keeps it in cx, cy, cz.
 

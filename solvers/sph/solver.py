@@ -46,7 +46,6 @@ class Solver:
         self._list = NeighbourList(n)
         self._others = NeighbourList(n)
         self._reduced = np.zeros((self.threads, 8))  # a cache line each
-        self._square = np.zeros((self.threads, 8))
         self._laws = tuple(b.law for b in problem.bodies)
         self._numbers = self._make_numbers()
         self._fill_state()
@@ -130,7 +129,7 @@ class Solver:
     def time(self) -> float:
         """Time reached; with `original` the label of the state, one step later than its positions."""
         time = float(self._progress[step.TIME])
-        return time + float(self._progress[step.NEXT]) if self.problem.original else time
+        return time + float(self._progress[step.NEXT]) if self.problem.original and self.step else time
 
     @property
     def step(self) -> int:
@@ -191,7 +190,11 @@ class Solver:
 
     def _arrays(self) -> Arrays:
         s = self._state
-        positions = {f"{axis}{suffix}": s.row(f"x{suffix}", k) for suffix in ("", "_half", "_list") for k, axis in enumerate("xyz")}
+        positions = {
+            f"{axis}{suffix}": s.row(f"x{suffix}", k)
+            for suffix in ("", "_half", "_list")
+            for k, axis in enumerate("xyz")
+        }
         return Arrays(
             **positions,
             u=s.row("u", 0),
@@ -225,7 +228,6 @@ class Solver:
             c_count=self._others.count,
             c_rows=self._others.rows,
             reduced=self._reduced,
-            square=self._square,
         )
 
     def _rebuild(self, *, sort: bool = True) -> None:
@@ -238,15 +240,15 @@ class Solver:
         assert y is not None
         cells = Cells(n, x, y, z, self._radius + self._skin)
         if sort:
-            s.sort(cells.order)
+            s.sort(cells.order, self.threads)
         h = None if self._uniform_h else s.row("h")
         radius = self._radius if h is None else 0.5 * self._radius
         group = s.material if self.problem.potential else None
         self._list.build(cells, x, y, z, radius=radius, skin=self._skin, h=h, group=group, threads=self.threads)
         if self.problem.potential:
-            self._others.build(cells, x, y, z, radius=radius, skin=self._skin, h=h, group=group, other=True, threads=self.threads)
-        if (longest := int(self._list.count.max())) > self._square.shape[1]:
-            self._square = np.zeros((self.threads, longest + 64))
+            self._others.build(
+                cells, x, y, z, radius=radius, skin=self._skin, h=h, group=group, other=True, threads=self.threads
+            )
         self.builds += 1
 
     def _broken(self) -> Diverged:

@@ -7,6 +7,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..jit import kernel
+from ..threads import run, share
+
 Floats = NDArray[np.float64]
 
 
@@ -17,8 +20,8 @@ class Arrays(NamedTuple):
     half step before; ax..: accelerations; stress (6 or 4: xx yy zz xy (yz zx)); gradient: of the velocity; s: (sigma - q I)/rho^2;
     density, volume m/rho, mass, h, energy, dissipated (per unit mass); nearest: squared distance; cx..: contact acceleration;
     contact_work: work of contact on a particle; state: the laws' history; id, material, fixed (bits x y z): integers;
-    first, count, rows: the neighbour list; c_first, c_count, c_rows: the list of other bodies; reduced,
-    square: (threads, .) what each thread found, and its scratch for a row of squared distances.
+    first, count, rows: the neighbour list; c_first, c_count, c_rows: the list of other bodies; reduced: (threads, .)
+    what each thread found.
     """
 
     x: Any
@@ -61,7 +64,6 @@ class Arrays(NamedTuple):
     c_count: Any
     c_rows: Any
     reduced: Any
-    square: Any
 
 
 class Numbers(NamedTuple):
@@ -86,6 +88,17 @@ class Numbers(NamedTuple):
     original: bool
     strength: Any
     exponent: Any
+
+
+@kernel
+def _permute(thread, threads, sync, numbers, spare, rows, order):
+    """numbers[k, i] = numbers[k, order[i]] for the first rows, by way of the spare array."""
+    r0, r1 = share(rows, thread, threads)
+    for k in range(r0, r1):
+        for i in range(len(order)):
+            spare[k, i] = numbers[k, order[i]]
+        for i in range(len(order)):
+            numbers[k, i] = spare[k, i]
 
 
 class State:
@@ -126,12 +139,10 @@ class State:
         rows = self.rows(name)
         return rows[k] if k < len(rows) else None
 
-    def sort(self, order: NDArray[np.int64]) -> None:
+    def sort(self, order: NDArray[np.int64], threads: int) -> None:
         """Put the particles into a new order; order: (n,) old places."""
         n = self.n
-        for k in range(self.lasting):
-            np.take(self.numbers[k], order, out=self._spare[k, :n])
-            self.numbers[k, :n] = self._spare[k, :n]
+        run(_permute, threads, self.numbers, self._spare, self.lasting, order)
         for whole in (self.id, self.material, self.fixed):
             whole[:n] = whole[:n][order]
 

@@ -195,12 +195,12 @@ def critical_step(i0, i1, z, numbers, arrays):
 
 
 @kernel
-def force(i0, i1, thread, z, h, mass, nearest, line, cx, potential, dt, arrays, numbers):
+def force(i0, i1, z, h, mass, nearest, line, cx, potential, dt, arrays, numbers):
     """Accelerations of a range of particles; returns their critical step."""
     pairs.momentum(
         i0, i1, arrays.first, arrays.count, arrays.rows, arrays.x, arrays.y, z, arrays.s, mass, h,
         numbers.inverse_h2, numbers.force_scale, line, numbers.body_x, numbers.body_y, numbers.body_z,
-        arrays.ax, arrays.ay, arrays.az, nearest, arrays.square[thread],
+        arrays.ax, arrays.ay, arrays.az, nearest,
     )  # fmt: skip
     if potential is not None:
         pairs.contact_acceleration(
@@ -265,9 +265,7 @@ def advance(
                 for i in range(i0, i1):
                     arrays.volume[i] = arrays.mass[i] / arrays.density[i]
                 barrier(sync, threads)
-            arrays.reduced[thread, 2] = force(
-                i0, i1, thread, z, h, mass, nearest, line, cx, potential, last, arrays, numbers
-            )
+            arrays.reduced[thread, 2] = force(i0, i1, z, h, mass, nearest, line, cx, potential, last, arrays, numbers)
             barrier(sync, threads)
             dt = numbers.step_factor * arrays.reduced[:threads, 2].min()
             if last > 0.0:

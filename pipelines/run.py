@@ -1,0 +1,234 @@
+"""Run decks or a scene: from files to a result folder with series, history, checkpoints and pictures."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from zrno.pipelines import options as command_options
+from zrno.pipelines import scene as scenes
+from zrno.pipelines.checkpoint import Checkpointer, load_latest
+from zrno.pipelines.convert import make_decks
+from zrno.pipelines.history import History
+from zrno.pipelines.manifest import Manifest, digests
+from zrno.pipelines.progress import Progress
+from zrno.pipelines.scene import Scene
+from zrno.pipelines.series import ResultSeries
+from zrno.translators import read
+from zrno.translators.model import Model
+from zrno.translators.text import Fault, InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from zrno.solvers.sph import Solver
+
+FRAMES = 20  # frames of a run whose deck names no interval
+ROWS = 10  # rows of history a frame, where the deck names no interval for them
+
+log = logging.getLogger("zrno")
+
+
+def run(
+    inputs: Sequence[Path | str],
+    *,
+    output: Path | str | None = None,
+    threads: int | None = None,
+    until: float | None = None,
+    resume: bool = False,
+    options: Mapping[str, Any] | None = None,
+    quiet: bool = True,
+    progress: bool = False,
+) -> dict[str, Any]:
+    """Run one particle deck or a scene; returns the keys of `zrno run --json`.
+
+    output: result folder (default: the input's name and `_results`, in the working folder). threads: None for all, or one
+    for few particles. until: stop at this simulated time. resume: go on from the newest checkpoint of the folder, if it has
+    one. options: by dotted key, as `--set` takes them (`compat=original`, scene keys, settings). quiet: no message on
+    stderr; progress: a bar there.
+
+    Raises InputError for bad input (nothing is written then), `Diverged` for a run that cannot go on, KeyboardInterrupt
+    after the checkpoint of an interrupted one.
+    """
+    chosen = command_options.split(options or {})
+    paths = [Path(p) for p in inputs]
+    scene, deck = _what_to_run(paths, chosen)
+    model = read(deck)
+    if scene is None:
+        command_options.apply(chosen.settings, model)
+    directory = Path(output) if output is not None else Path(f"{paths[0].stem}_results")
+
+    started = time.perf_counter()
+    from zrno.solvers.jit import compile_seconds
+
+    solver, state = _solver(model, deck, directory, chosen.run, threads, resume)
+    end = model.particle_control.end_time if model.particle_control else 0.0
+    end = end if until is None else min(end, until)
+
+    series, history, checkpointer = _observers(model, scene, directory, end, digests([deck]), resume=state is not None)
+    watchers = [series, history, checkpointer, Progress(end, show=progress)]
+    result: dict[str, Any] = {}
+    with _log_file(directory, append=state is not None):
+        manifest = Manifest(
+            directory,
+            inputs=digests([*paths, deck]),
+            options=_all_options(scene, model, chosen, until),
+            threads=solver.threads,
+            title=(scene.title if scene else "") or model.title,
+            units=scene.units if scene else None,
+        )
+        for warning in model.warnings:
+            log.warning(warning)
+        log.info("%s: %d particles, end time %g; built for %s", deck.name, solver.n, end, solver.kernels())
+        steps_before = solver.step
+        status = "failed"
+        try:
+            from zrno.solvers.time import run as run_to_end
+
+            loop = time.perf_counter()
+            run_to_end(solver, watchers, end)
+            status = "done"
+        except KeyboardInterrupt:
+            status = "interrupted"
+            checkpointer.save(solver)
+            log.warning("interrupted at t = %g, step %d; --resume goes on from here", solver.time, solver.step)
+            raise
+        except Exception as error:
+            log.error("%s", error)
+            raise
+        finally:
+            watchers[-1].finish(solver)
+            seconds = time.perf_counter() - loop
+            result = {
+                "status": status,
+                "steps": solver.step,
+                "time": solver.time,
+                "wall_seconds": time.perf_counter() - started,
+                "compile_seconds": compile_seconds(),
+                "particles": solver.n,
+                "nodes": 0,
+                "elements": 0,
+                "particle_steps_per_second": solver.n * (solver.step - steps_before) / max(seconds, 1e-9),
+                "energy": solver.energy_report(),
+                "output": str(directory),
+                "warnings": list(model.warnings),
+            }
+            manifest.update(**result)
+        log.info(
+            "done: %d steps to t = %g in %.2f s (%.3g particle-steps/s, compiling %.1f s), energy balance error %.2e",
+            solver.step, solver.time, seconds, result["particle_steps_per_second"], result["compile_seconds"],
+            result["energy"]["balance_error"],
+        )  # fmt: skip
+    result["pictures"] = _pictures(scene, directory, result["warnings"])
+    return result
+
+
+def _what_to_run(paths: Sequence[Path], chosen: command_options.Options) -> tuple[Scene | None, Path]:
+    """The scene, if one was given, and the particle deck, made if a scene makes it."""
+    if len(paths) == 1 and paths[0].suffix.lower() in (".yaml", ".yml"):
+        scene = scenes.load(paths[0], chosen.scene)
+        folder = paths[0].parent
+        decks = [folder / deck for deck in scene.decks]
+        _only_particles(decks)
+        make_decks(scene, folder)
+        return scene, decks[0]
+    _only_particles(paths)
+    unused = [key for key in chosen.scene if key not in chosen.settings]
+    if unused:
+        raise InputError([Fault("--set", 1, 1, f"{key} is for scenes", key, "a scene") for key in unused])
+    return None, paths[0]
+
+
+def _only_particles(decks: Sequence[Path]) -> None:
+    """Refuse what later versions will run."""
+    for deck in decks:
+        if deck.suffix.lower() == ".dat":
+            raise InputError([Fault(str(deck), 1, 1, "finite elements are not run yet", "", "a particle deck .mcm")])
+    if len(decks) != 1:
+        raise InputError([Fault(str(decks[-1]), 1, 1, "one run takes one particle deck", "", "one .mcm or one scene")])
+
+
+def _solver(
+    model: Model, deck: Path, directory: Path, run_options: Mapping[str, Any], threads: int | None, resume: bool
+) -> tuple[Solver, Mapping[str, Any] | None]:
+    """The solver at its start or where the newest checkpoint left it; and that checkpoint."""
+    from zrno.pipelines.build import particle_problem
+    from zrno.solvers.sph import Solver
+
+    problem = particle_problem(model, str(deck), original=run_options.get("compat") == "original")
+    state = load_latest(directory, inputs=digests([deck])) if resume else None
+    solver = Solver(problem, threads=threads)
+    if state is not None:
+        solver.restore(dict(state))
+    return solver, state
+
+
+def _observers(
+    model: Model, scene: Scene | None, directory: Path, end: float, decks: Mapping[str, str], *, resume: bool
+) -> tuple[ResultSeries, History, Checkpointer]:
+    control = model.particle_control
+    assert control is not None
+    frames = (scene.output.every if scene else None) or control.output_interval or max(end, 1e-300) / FRAMES
+    rows = control.history_interval or frames / ROWS
+    saves = scene.checkpoint.every if scene and scene.checkpoint else frames
+    units = scene.system.labels() if scene and scene.system else {}
+    return (
+        ResultSeries(
+            directory,
+            {i: m.name for i, m in model.materials.items()},
+            interval=frames,
+            format=scene.output.format if scene else "vtp",
+            resume=resume,
+        ),
+        History(directory, interval=rows, units=units, resume=resume),
+        Checkpointer(directory, interval=saves, inputs=decks),
+    )
+
+
+def _all_options(
+    scene: Scene | None, model: Model, chosen: command_options.Options, until: float | None
+) -> dict[str, Any]:
+    from dataclasses import asdict
+
+    control = asdict(model.particle_control) if model.particle_control else {}
+    return {
+        "scene": scene.model_dump() if scene else None,
+        "control": control,
+        "compat": chosen.run.get("compat"),
+        "until": until,
+    }
+
+
+def _pictures(scene: Scene | None, directory: Path, warnings: list[str]) -> list[str]:
+    """The pictures that a scene asks for. A machine that cannot draw has still run: that is a warning."""
+    drawn: list[str] = []
+    for picture in scene.render if scene else ():
+        from zrno.pipelines.errors import Missing
+        from zrno.pipelines.render import render
+
+        try:
+            drawn += [str(p) for p in render(directory, field=picture.field, time=picture.time, view=picture.view)]
+        except Missing as error:
+            warnings.append(str(error))
+            log.warning("%s", error)
+            break
+    return drawn
+
+
+@contextmanager
+def _log_file(directory: Path, *, append: bool) -> Iterator[None]:
+    """run.log of a result folder, for as long as the run lasts."""
+    directory.mkdir(parents=True, exist_ok=True)
+    handler = logging.FileHandler(directory / "run.log", mode="a" if append else "w", encoding="utf-8")
+    handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))
+    log.addHandler(handler)
+    log.setLevel(logging.INFO)
+    try:
+        yield
+    finally:
+        log.removeHandler(handler)
+        handler.close()

@@ -1,0 +1,72 @@
+"""The time loop: brings a solver to its end and calls the observers. It knows none of them by name."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+PAUSE = 0.2  # seconds between returns to Python, for progress and interrupts
+
+
+class Steppable(Protocol):
+    """What the loop needs of a solver."""
+
+    @property
+    def time(self) -> float: ...
+
+    @property
+    def step(self) -> int: ...
+
+    def advance(self, until: float, max_steps: int) -> None:
+        """Take up to max_steps steps towards `until`."""
+
+
+class Observer(Protocol):
+    """Output, history, checkpoint, progress. interval: simulated time between calls; None: some times a second."""
+
+    interval: float | None
+
+    def start(self, solver: Any) -> None:
+        """Before the first step."""
+
+    def observe(self, solver: Any) -> None:
+        """At a multiple of the interval."""
+
+    def finish(self, solver: Any) -> None:
+        """After the last step of a run that came to its end."""
+
+
+def next_time(now: float, interval: float) -> float:
+    """The first multiple of the interval that is later than now, by more than round-off."""
+    return (math.floor(now / interval + 1e-6) + 1) * interval
+
+
+def run(solver: Steppable, observers: Sequence[Observer], until: float) -> None:
+    """Bring a solver to the time `until`, calling each observer at the multiples of its interval.
+
+    What an observer or the solver raises (a diverged run, an interrupt) goes through; between two returns the loop does at
+    most about PAUSE seconds of work.
+    """
+    for observer in observers:
+        observer.start(solver)
+    due = {id(o): next_time(solver.time, o.interval) for o in observers if o.interval}
+    steps = 1
+    while solver.time < until:
+        target = min([until, *due.values()])
+        before, started = solver.step, time.perf_counter()
+        solver.advance(target, steps)
+        seconds = time.perf_counter() - started
+        if solver.step == before and solver.time < target:
+            raise RuntimeError("the solver makes no progress")
+        if solver.step - before == steps:  # it was cut short: find how many steps fill the pause
+            steps = max(1, min(2 * steps, int(steps * PAUSE / max(seconds, 1e-6))))
+        for observer in observers:
+            if observer.interval is None:
+                observer.observe(solver)
+            elif solver.time >= due[id(observer)]:
+                observer.observe(solver)
+                due[id(observer)] = next_time(solver.time, observer.interval)
+    for observer in observers:
+        observer.finish(solver)
