@@ -119,6 +119,8 @@ class Checkpointer:
     time between steps, as when a run is interrupted.
     """
 
+    exact = True
+
     def __init__(
         self,
         directory: Path | str,

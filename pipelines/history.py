@@ -29,6 +29,8 @@ class History:
     does not give is nan.
     """
 
+    exact = False
+
     def __init__(
         self,
         directory: Path | str,

@@ -9,6 +9,7 @@ class Progress:
     """Observer: a bar with the simulated time, the steps and the time left. show: False makes it silent."""
 
     interval: float | None = None
+    exact = False
 
     def __init__(self, end: float, *, show: bool) -> None:
         self._end = end

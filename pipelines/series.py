@@ -108,6 +108,8 @@ class ResultSeries:
     go on with the frames up to the solver's time, else begin anew.
     """
 
+    exact = True
+
     def __init__(
         self,
         directory: Path | str,

@@ -19,14 +19,18 @@ class Steppable(Protocol):
     @property
     def step(self) -> int: ...
 
-    def advance(self, until: float, max_steps: int) -> None:
-        """Take up to max_steps steps towards `until`."""
+    def advance(self, until: float, max_steps: int, pause: float = math.inf) -> None:
+        """Take up to max_steps steps towards `until`, which is met; come back once `pause` is passed."""
 
 
 class Observer(Protocol):
-    """Output, history, checkpoint, progress. interval: simulated time between calls; None: some times a second."""
+    """Output, history, checkpoint, progress. interval: simulated time between calls; None: some times a second.
+
+    exact: whether it is called at the multiples of its interval, to which steps are trimmed, or at the first step after them.
+    """
 
     interval: float | None
+    exact: bool
 
     def start(self, solver: Any) -> None:
         """Before the first step."""
@@ -44,7 +48,7 @@ def next_time(now: float, interval: float) -> float:
 
 
 def run(solver: Steppable, observers: Sequence[Observer], until: float) -> None:
-    """Bring a solver to the time `until`, calling each observer at the multiples of its interval.
+    """Bring a solver to the time `until`, calling each observer at the multiples of its interval or right after.
 
     What an observer or the solver raises (a diverged run, an interrupt) goes through; between two returns the loop does at
     most about PAUSE seconds of work.
@@ -52,11 +56,13 @@ def run(solver: Steppable, observers: Sequence[Observer], until: float) -> None:
     for observer in observers:
         observer.start(solver)
     due = {id(o): next_time(solver.time, o.interval) for o in observers if o.interval}
+    exact = {id(o) for o in observers if o.exact}
     steps = 1
     while solver.time < until:
-        target = min([until, *due.values()])
+        target = min([until, *(t for o, t in due.items() if o in exact)])
+        pause = min([math.inf, *(t for o, t in due.items() if o not in exact)])
         before, started = solver.step, time.perf_counter()
-        solver.advance(target, steps)
+        solver.advance(target, steps, pause)
         seconds = time.perf_counter() - started
         if solver.step == before and solver.time < target:
             raise RuntimeError("the solver makes no progress")

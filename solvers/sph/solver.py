@@ -141,27 +141,30 @@ class Solver:
         """The step to come."""
         return float(self._progress[step.NEXT])
 
-    def advance(self, until: float, max_steps: int) -> None:
+    def advance(self, until: float, max_steps: int, pause: float = math.inf) -> None:
         """Take up to max_steps steps towards the time `until`, which is met exactly (with `original`: passed).
+
+        pause: come back at the first step that has passed this time; the steps are not trimmed to meet it.
 
         Raises `Diverged` with the step, the particle and the likely cause; the state is that of the last good step, but
         for the particles that broke.
         """
         wanted = self.step + max_steps
         while self.step < wanted:
-            reason = self._run_kernel(until, wanted - self.step)
+            reason = self._run_kernel(until, wanted - self.step, pause)
             if reason == step.REBUILD:
                 self._rebuild()
+                self._run_kernel(until, 0)
+                if self.time >= pause:
+                    break
             elif reason == step.BROKEN:
                 raise self._broken()
             elif reason == step.COLLAPSED:
                 raise self._collapsed()
             else:
                 break
-        if self._progress[step.PENDING]:
-            self._run_kernel(until, 0)
 
-    def _run_kernel(self, until: float, steps: int) -> int:
+    def _run_kernel(self, until: float, steps: int, pause: float = math.inf) -> int:
         a = self._arrays()
         solid = self.problem.dimension == 3
         potential = self.problem.potential
@@ -183,6 +186,7 @@ class Solver:
                 self._laws,
                 self._progress,
                 float(until),
+                float(pause),
                 steps,
                 (0.5 * self._skin) ** 2,
             )[0]

@@ -235,13 +235,14 @@ def _unrolled(laws, number, i0, i1, z, dt, arrays, numbers):
 
 @kernel
 def advance(
-    thread, threads, sync, n, solid, z, h, mass, nearest, line, cx, potential, arrays, numbers, laws, progress, until, steps,
+    thread, threads, sync, n, solid, z, h, mass, nearest, line, cx, potential, arrays, numbers, laws, progress, until, pause, steps,
     reach2,
 ):  # fmt: skip
     """Take up to `steps` steps towards `until`, each thread for its own range; returns why it stopped.
 
     Every thread decides alike, from the same numbers. reach2: squared half skin of the list. Times are met exactly, except
-    where the original program is followed: there `until` is a label, the time of the step to come (see `solver`).
+    where the original program is followed: there `until` is a label, the time of the step to come (see `solver`). pause: a
+    time that is only to be passed.
     """
     i0, i1 = share(n, thread, threads)
     time = progress[TIME]
@@ -271,7 +272,7 @@ def advance(
             if last > 0.0:
                 dt = min(dt, GROWTH * last)
             pending = False
-        if done == steps:
+        if done == steps or (done > 0 and time >= pause):
             break
         left = until - time
         if numbers.original:
