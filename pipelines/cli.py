@@ -200,7 +200,8 @@ def run(
             quiet=quiet,
             progress=out.progress,
         )
-        out.answer(result, f"{result['status']}: {result['steps']} steps to t = {result['time']:g}, {result['output']}")
+        text = f"{result['status']}: {result['steps']} steps to t = {result['time']:g}, {result['output']}"
+        out.answer(result, "\n".join([text, *result.get("pictures", ())]))
 
 
 def _size(text: str) -> tuple[int, int]:

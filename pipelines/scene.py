@@ -16,7 +16,7 @@ from zrno.pipelines.marked import Location, Marked, Place, did_you_mean, dotted
 from zrno.pipelines.units import SYSTEMS, Units
 from zrno.pipelines.view import VIEWS
 from zrno.translators import settings as analysis
-from zrno.translators.text import MAX_FAULTS, InputError
+from zrno.translators.text import MAX_FAULTS, Fault, InputError
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
@@ -182,8 +182,16 @@ def load(path: Path | str, options: Mapping[str, Any] | None = None) -> Scene:
         document.fault((), "a scene is a mapping of keys", "title, decks, ...")
         document.faults.stop()
     for key, value in (options or {}).items():
-        for location in _targets(document.data, key):
-            document.override(location, value, Place("--set", 1, len(key) + 2, str(value)))
+        place = Place("--set", 1, len(key) + 2, str(value))
+        targets = _targets(document.data, key)
+        if not targets:
+            message, expected = (
+                f"{key}: this scene makes no deck from a mesh",
+                "a scene with meshes, or the deck itself",
+            )
+            document.faults.found.append(Fault(place.path, 1, 1, message, place.text, expected))
+        for location in targets:
+            document.override(location, value, place)
     scene = None
     try:
         scene = Scene.model_validate(document.data)

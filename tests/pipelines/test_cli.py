@@ -58,7 +58,14 @@ def _call(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, st
     return int(stop.value.code or 0), out, err
 
 
-RESULT = {"status": "done", "steps": 3, "time": 0.5, "output": "results", "energy": {"final": float("nan")}}
+RESULT = {
+    "status": "done",
+    "steps": 3,
+    "time": 0.5,
+    "output": "results",
+    "pictures": ["p.png"],
+    "energy": {"final": float("nan")},
+}
 
 
 def test_help_answers_in_under_a_third_of_a_second() -> None:
@@ -107,7 +114,7 @@ def test_run_hands_its_options_on(capsys: pytest.CaptureFixture[str], stand_in: 
         "quiet": True,
         "progress": False,
     }
-    assert out == "done: 3 steps to t = 0.5, results\n"
+    assert out == "done: 3 steps to t = 0.5, results\np.png\n"
 
 
 def test_json_is_one_object_and_has_no_nan(capsys: pytest.CaptureFixture[str], stand_in: Any) -> None:

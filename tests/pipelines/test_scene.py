@@ -219,6 +219,9 @@ def test_bad_options_say_what_is_known(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="not a key and its value"):
         options.parse(["novalue"])
     assert _faults(_scene(tmp_path, GOOD), **{"output.every": -1})[0].startswith("--set:1:14: error: output.every")
+    path = _scene(tmp_path, "decks: [plate.mcm]\n")
+    (tmp_path / "plate.mcm").touch()
+    assert _faults(path, end_time=3)[0].startswith("--set:1:1: error: end_time: this scene makes no deck from a mesh")
     assert "there is no render.5.field" in _faults(_scene(tmp_path, GOOD), **{"render.5.field": "x"})[0]
 
 
