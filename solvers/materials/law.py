@@ -27,7 +27,7 @@ def is_law(numba_type: Any, law: type) -> bool:
 
 def stress_update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, state, i):
     """New stress (6 components) and the energy that plastic flow dissipates per unit volume of one strain increment; updates state[:, i]."""
-    raise NotImplementedError("called from jitted code only, or through python_update")
+    raise NotImplementedError("called from jitted code only; `point.drive` is for Python")
 
 
 def rotate_state(law, w_xy, w_yz, w_zx, state, i):

@@ -117,7 +117,7 @@ def momentum(
     y,
     z,
     s,
-    mass,
+    weight,
     h,
     inverse_h2,
     scale,
@@ -129,10 +129,14 @@ def momentum(
     ay,
     az,
     nearest,
+    density,
 ):
     """a_i = sum_j m_j (s_i + s_j) . grad_i W_ij + g: the sum form that conserves momentum pair by pair.
 
-    nearest: None, or (n + 1,) the squared distance to the nearest listed particle.
+    weight: masses, or None where all are equal and in the scale. Where bodies differ in density the sum is
+    a_i = sum_j V_j (sigma_i + sigma_j) / rho_i . grad_i W_ij instead: the one whose work is that of the velocity gradient above;
+    then s is the stress, the weights are the volumes and density is given. nearest: None, or (n + 1,) the squared distance to the
+    nearest listed particle.
     """
     if z is not None:
         sxx = s[0]
@@ -185,8 +189,8 @@ def momentum(
             else:
                 ih2 = inverse_h2
                 factor = scale
-            if mass is not None:
-                factor *= mass[j]
+            if weight is not None:
+                factor *= weight[j]
             q2 = r2 * ih2 + TINY
             iq = inverse_root(q2)
             factor *= spline_slope(q2 * iq, iq)
@@ -203,6 +207,12 @@ def momentum(
             else:
                 a0 += (xxi + sxx[j]) * dx + xy * dy
                 a1 += xy * dx + (yyi + syy[j]) * dy
+        if density is not None:
+            inverse = 1.0 / density[i]
+            a0 *= inverse
+            a1 *= inverse
+            if z is not None:
+                a2 *= inverse
         ax[i] = a0 + body_x
         ay[i] = a1 + body_y
         if z is not None:
@@ -285,7 +295,7 @@ def contact_acceleration(
 
 
 @kernel
-def interface_force(i0, i1, first, count, rows, x, y, z, s, mass, h, volume_exponent, normal, material, body, force):
+def interface_force(i0, i1, first, count, rows, x, y, z, s, weight, h, volume_exponent, normal, material, body, force):
     """Adds to force[3] what particles of other materials do to those of material `body` through the momentum sum."""
     for i in range(i0, i1):
         if material[i] != body:
@@ -303,7 +313,7 @@ def interface_force(i0, i1, first, count, rows, x, y, z, s, mass, h, volume_expo
                 continue
             q2 = r2 / (mean * mean) + TINY
             iq = inverse_root(q2)
-            factor = mass[i] * mass[j] * normal * mean**volume_exponent * spline_slope(q2 * iq, iq)
+            factor = weight[i] * weight[j] * normal * mean**volume_exponent * spline_slope(q2 * iq, iq)
             if z is not None:
                 xy = s[3, i] + s[3, j]
                 yz = s[4, i] + s[4, j]

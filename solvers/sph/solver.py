@@ -23,9 +23,16 @@ from .smoothing import SUPPORT, normaliser
 from .state import Arrays, Numbers, State
 
 SKIN = 0.2  # of the largest h: the list's spare radius
+CHECKED = 50  # steps between looks at the energy balance
+CREATED = 3.0  # so many times the energy put in cannot come out of a stable run
 SMALL = 2000  # fewer particles run on one thread: a parallel region costs more than it saves
 
 Floats = NDArray[np.float64]
+
+
+def _total(energies: dict[str, float]) -> float:
+    """What stays constant."""
+    return energies["kinetic"] + energies["internal"] + energies["contact_energy"] - energies["external_work"]
 
 
 class Solver:
@@ -37,6 +44,8 @@ class Solver:
         self.builds = 0
         n = self.n = len(problem.x)
         self.threads = 1 if n < SMALL else max(1, min(threads or available(), available()))
+        densities = {b.density for b in problem.bodies}
+        self._mixed = len(densities) > 1 and not problem.potential and not problem.original
         self._uniform_h = bool(np.all(problem.h == problem.h[0]))
         self._uniform_mass = bool(np.all(problem.mass == problem.mass[0]))
         self._radius = SUPPORT * float(problem.h.max())
@@ -83,6 +92,7 @@ class Solver:
             step_option=p.step_option,
             step_factor=p.step_factor,
             original=p.original,
+            mixed=self._mixed,
             strength=np.array([b.strength for b in p.bodies]),
             exponent=np.array([b.exponent for b in p.bodies]),
         )
@@ -109,7 +119,6 @@ class Solver:
         s.rows("x_half")[:, :n] = s.rows("x")[:, :n] - 0.5 * first * s.rows("u")[:, :n]
         self._progress[step.LAST] = first
         self._progress[step.PENDING] = 1.0
-        self._run_kernel(0.0, 0)
 
     def kernels(self) -> str:
         """What the loops were built for, for the log."""
@@ -149,7 +158,8 @@ class Solver:
         Raises `Diverged` with the step, the particle and the likely cause; the state is that of the last good step, but
         for the particles that broke.
         """
-        wanted = self.step + max_steps
+        started = self.step
+        wanted = started + max_steps
         while self.step < wanted:
             reason = self._run_kernel(until, wanted - self.step, pause)
             if reason == step.REBUILD:
@@ -163,6 +173,8 @@ class Solver:
                 raise self._collapsed()
             else:
                 break
+        if self.step // CHECKED > started // CHECKED:
+            self._check_energy()
 
     def _run_kernel(self, until: float, steps: int, pause: float = math.inf) -> int:
         a = self._arrays()
@@ -181,6 +193,7 @@ class Solver:
                 True if self.problem.dimension == 1 else None,
                 a.cx if potential else None,
                 True if potential else None,
+                True if self._mixed else None,
                 a,
                 self._numbers,
                 self._laws,
@@ -220,6 +233,7 @@ class Solver:
             h=s.row("h"),
             energy=s.row("energy"),
             dissipated=s.row("dissipated"),
+            viscosity=s.row("viscosity"),
             nearest=s.row("nearest"),
             state=s.rows("state"),
             id=s.id,
@@ -255,12 +269,28 @@ class Solver:
             )
         self.builds += 1
 
+    def _check_energy(self) -> None:
+        """An unstable step makes energy out of nothing, long before a number overflows."""
+        start, now = self._start_energy, self._energies()
+        given = start["kinetic"] + abs(start["internal"]) + abs(now["external_work"])
+        made = _total(now) - _total(start)
+        if not made <= CREATED * given:
+            s, n = self._state, self.n
+            kinetic = s.rows("mass")[0, :n] * np.sum(s.rows("u")[:, :n] ** 2, axis=0)
+            raise Diverged(
+                self.step,
+                int(s.id[np.argmax(kinetic)]),
+                f"the run has made {made / given:.3g} times the energy that was put in, most of it here: "
+                "the step factor may be too large or the material is stretched apart",
+            )
+
     def _broken(self) -> Diverged:
         i = int(self._progress[step.BAD])
         return Diverged(
             self.step + 1,
             int(self._state.id[i]),
-            "its velocity is not finite: the step factor may be too large, two particles coincide, or the material is stretched apart",
+            "it moved further than its smoothing length in one step, or its velocity is not a number: the step factor may be "
+            "too large, two particles coincide, or the material is stretched apart",
         )
 
     def _collapsed(self) -> Diverged:
@@ -350,7 +380,7 @@ class Solver:
             force[: s.d] = (s.rows("c")[:, :n] * s.rows("mass")[0, :n] * first).sum(axis=1)
         elif len(self.problem.bodies) > 1:
             pairs.interface_force(
-                0, n, a.first, a.count, a.rows, a.x, a.y, a.z, a.s, a.mass, a.h,
+                0, n, a.first, a.count, a.rows, a.x, a.y, a.z, a.s, a.volume if self._mixed else a.mass, a.h,
                 -(self.problem.dimension + 2.0), self._numbers.normal, a.material, 0, force,
             )  # fmt: skip
         return force
@@ -383,9 +413,6 @@ class Solver:
     def energy_report(self) -> dict[str, float]:
         """Energies at the start and now; balance_error is relative to the largest of kinetic, internal and external work."""
 
-        def total(e: dict[str, float]) -> float:
-            return e["kinetic"] + e["internal"] + e["contact_energy"] - e["external_work"]
-
         start, now = self._start_energy, self._energies()
         scale = max(start["kinetic"], now["kinetic"], abs(now["internal"]), abs(now["external_work"]), 1e-300)
         return {
@@ -395,7 +422,7 @@ class Solver:
             "internal": now["internal"],
             "external_work": now["external_work"],
             "dissipated": now["dissipated"],
-            "balance_error": abs(total(now) - total(start)) / scale,
+            "balance_error": abs(_total(now) - _total(start)) / scale,
         }
 
     # to be continued

@@ -18,7 +18,7 @@ class Arrays(NamedTuple):
 
     x y z, x_half.. (half a step back), x_list.. (where the list was built), x_start..: positions; u v w: velocities at the
     half step before; ax..: accelerations; stress (6 or 4: xx yy zz xy (yz zx)); gradient: of the velocity; s: (sigma - q I)/rho^2;
-    density, volume m/rho, mass, h, energy, dissipated (per unit mass); nearest: squared distance; cx..: contact acceleration;
+    density, volume m/rho, mass, h, energy, dissipated (per unit mass); viscosity: pressure q; nearest: squared distance; cx..: contact acceleration;
     contact_work: work of contact on a particle; state: the laws' history; id, material, fixed (bits x y z): integers;
     first, count, rows: the neighbour list; c_first, c_count, c_rows: the list of other bodies; reduced: (threads, .)
     what each thread found.
@@ -52,6 +52,7 @@ class Arrays(NamedTuple):
     h: Any
     energy: Any
     dissipated: Any
+    viscosity: Any
     nearest: Any
     state: Any
     id: Any
@@ -69,7 +70,7 @@ class Arrays(NamedTuple):
 class Numbers(NamedTuple):
     """The constants of a run.
 
-    scale, force_scale: see `pairs`, the latter times the mass where all are equal; normal: a_d. viscous: (bodies, 4) linear
+    mixed: bodies of different density are neighbours. scale, force_scale: see `pairs`, the latter times the mass where all are equal; normal: a_d. viscous: (bodies, 4) linear
     coefficient times c, quadratic, density limits; wave: (bodies,) speeds; strength, exponent: (bodies,) of the contact.
     """
 
@@ -86,6 +87,7 @@ class Numbers(NamedTuple):
     step_option: int
     step_factor: float
     original: bool
+    mixed: bool
     strength: Any
     exponent: Any
 
@@ -111,7 +113,7 @@ class State:
         self.d = d
         sizes = {
             "x": d, "u": d, "a": d, "x_half": d, "x_list": d, "x_start": d, "stress": 6 if solid else 4,
-            "density": 1, "volume": 1, "mass": 1, "h": 1, "energy": 1, "dissipated": 1, "contact_work": int(contact), "state": state_rows,
+            "density": 1, "volume": 1, "mass": 1, "h": 1, "energy": 1, "dissipated": 1, "viscosity": 1, "contact_work": int(contact), "state": state_rows,
             "gradient": d * d, "s": 6 if solid else 3, "nearest": 1, "c": d if contact else 0,
         }  # fmt: skip
         self.slices: dict[str, slice] = {}

@@ -96,14 +96,16 @@ def constitutive(i0, i1, z, number, law, dt, arrays, numbers):
         work = 0.5 * ((o_xx + n_xx) * d_xx + (o_yy + n_yy) * d_yy + (o_zz + n_zz) * d_zz)
         work += (o_xy + n_xy) * d_xy + (o_yz + n_yz) * d_yz + (o_zx + n_zx) * d_zx
         specific = 2.0 / (rho + density[i])
-        arrays.energy[i] += (work - viscosity * volumetric) * specific
-        arrays.dissipated[i] += (plastic - viscosity * volumetric) * specific
+        heat = -0.5 * (arrays.viscosity[i] + viscosity) * volumetric  # the mean over the step, as of the stress
+        arrays.viscosity[i] = viscosity
+        arrays.energy[i] += (work + heat) * specific
+        arrays.dissipated[i] += (plastic + heat) * specific
         density[i] = rho
         stress[0, i] = n_xx
         stress[1, i] = n_yy
         stress[2, i] = n_zz
         stress[3, i] = n_xy
-        inverse = 1.0 / (rho * rho)
+        inverse = 1.0 if numbers.mixed else 1.0 / (rho * rho)
         s[0, i] = (n_xx - viscosity) * inverse
         s[1, i] = (n_yy - viscosity) * inverse
         if z is not None:
@@ -121,8 +123,8 @@ def constitutive(i0, i1, z, number, law, dt, arrays, numbers):
 def kick_and_drift(i0, i1, z, cx, kick, dt, arrays):
     """v += a kick, x += v dt; directions in the mask `fixed` (bits x y z) do not move.
 
-    Returns the largest squared distance from where the list was built, and the index of a particle whose velocity is not a
-    number, or so large that its square is not (-1: none).
+    Returns the largest squared distance from where the list was built, and the index of a particle that moved further than
+    its smoothing length or whose velocity is not a number (-1: none).
     """
     x, y, u, v = arrays.x, arrays.y, arrays.u, arrays.v
     largest = 0.0
@@ -157,7 +159,7 @@ def kick_and_drift(i0, i1, z, cx, kick, dt, arrays):
             if z is not None:
                 power += arrays.cz[i] * arrays.w[i]
             arrays.contact_work[i] += 0.5 * dt * arrays.mass[i] * power
-        if not speed2 < 1e300:
+        if not speed2 * dt * dt <= arrays.h[i] * arrays.h[i]:
             bad = i
         largest = max(largest, moved2)
     return largest, float(bad)
@@ -171,6 +173,9 @@ def critical_step(i0, i1, z, numbers, arrays):
     least = np.inf
     for i in range(i0, i1):
         c = numbers.wave[arrays.material[i]]
+        speed2 = arrays.u[i] ** 2 + arrays.v[i] ** 2
+        if z is not None:
+            speed2 += arrays.w[i] ** 2
         if option == 0:
             length = (arrays.mass[i] / arrays.density[i]) ** (1.0 / numbers.dimension)
             trace = arrays.gradient[0, i]
@@ -182,10 +187,9 @@ def critical_step(i0, i1, z, numbers, arrays):
             closing = max(0.0, -trace)
             q = viscous[m, 0] + viscous[m, 1] * length * closing
             least = min(least, length / (q + np.sqrt(q * q + c * c)))
-            continue
-        speed2 = arrays.u[i] ** 2 + arrays.v[i] ** 2
-        if z is not None:
-            speed2 += arrays.w[i] ** 2
+            if numbers.original:
+                continue
+            c = 0.0  # nor may a particle run past its neighbours
         length = arrays.h[i]
         if option == 2:
             length = np.sqrt(arrays.nearest[i])
@@ -195,12 +199,20 @@ def critical_step(i0, i1, z, numbers, arrays):
 
 
 @kernel
-def force(i0, i1, z, h, mass, nearest, line, cx, potential, dt, arrays, numbers):
+def force(i0, i1, z, h, mass, nearest, line, cx, potential, mixed, dt, arrays, numbers):
     """Accelerations of a range of particles; returns their critical step."""
+    if mixed is not None:
+        weight = arrays.volume
+        density = arrays.density
+        scale = numbers.scale
+    else:
+        weight = mass
+        density = None
+        scale = numbers.force_scale
     pairs.momentum(
-        i0, i1, arrays.first, arrays.count, arrays.rows, arrays.x, arrays.y, z, arrays.s, mass, h,
-        numbers.inverse_h2, numbers.force_scale, line, numbers.body_x, numbers.body_y, numbers.body_z,
-        arrays.ax, arrays.ay, arrays.az, nearest,
+        i0, i1, arrays.first, arrays.count, arrays.rows, arrays.x, arrays.y, z, arrays.s, weight, h,
+        numbers.inverse_h2, scale, line, numbers.body_x, numbers.body_y, numbers.body_z,
+        arrays.ax, arrays.ay, arrays.az, nearest, density,
     )  # fmt: skip
     if potential is not None:
         pairs.contact_acceleration(
@@ -235,7 +247,7 @@ def _unrolled(laws, number, i0, i1, z, dt, arrays, numbers):
 
 @kernel
 def advance(
-    thread, threads, sync, n, solid, z, h, mass, nearest, line, cx, potential, arrays, numbers, laws, progress, until, pause, steps,
+    thread, threads, sync, n, solid, z, h, mass, nearest, line, cx, potential, mixed, arrays, numbers, laws, progress, until, pause, steps,
     reach2,
 ):  # fmt: skip
     """Take up to `steps` steps towards `until`, each thread for its own range; returns why it stopped.
@@ -266,7 +278,9 @@ def advance(
                 for i in range(i0, i1):
                     arrays.volume[i] = arrays.mass[i] / arrays.density[i]
                 barrier(sync, threads)
-            arrays.reduced[thread, 2] = force(i0, i1, z, h, mass, nearest, line, cx, potential, last, arrays, numbers)
+            arrays.reduced[thread, 2] = force(
+                i0, i1, z, h, mass, nearest, line, cx, potential, mixed, last, arrays, numbers
+            )
             barrier(sync, threads)
             dt = numbers.step_factor * arrays.reduced[:threads, 2].min()
             if last > 0.0:
