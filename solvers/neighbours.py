@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .jit import kernel
-from .threads import run, share
+from .threads import claim, run
 
 BLOCK = 256  # particles whose rows share one stretch of memory
 LANES = 8  # rows are padded to this many entries
@@ -215,12 +215,13 @@ def _fill(
     room,
     needed,
 ):
-    b0, b1 = share(len(needed), thread, threads)
-    for b in range(b0, b1):
+    b = claim(sync, 0)
+    while b < len(needed):
         needed[b] = _fill_rows(
             b * BLOCK, min(n, (b + 1) * BLOCK), n, x, y, z, h, reach, h_max, origin, size, shape, start, group, other,
             first, count, rows, room[b], room[b + 1],
         )  # fmt: skip
+        b = claim(sync, 0)
 
 
 def blocks(n: int) -> int:

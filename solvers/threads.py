@@ -55,7 +55,7 @@ def _offer_processor(typing_context):
 
 @kernel
 def barrier(sync, threads):
-    """Wait until all threads are here. sync: (2,) int64, arrivals and generation, both zero before the first use."""
+    """Wait until all threads are here. sync: (3,) int64, zero before the first use: arrivals, generation, tickets."""
     if threads == 1:
         return
     generation = _fetch_add(sync, 1, 0)
@@ -70,6 +70,16 @@ def barrier(sync, threads):
             _offer_processor()
 
 
+@kernel
+def claim(sync, taken):
+    """The next piece of work that no thread has begun, or a number beyond the last when there is none left.
+
+    Pieces are handed out as they are asked for, so that a thread that is held up does not hold up the others. taken: tickets of
+    the phases before, their pieces and one more for each thread: every thread asks once in vain.
+    """
+    return _fetch_add(sync, 2, 1) - taken
+
+
 def available() -> int:
     """Processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else (os.cpu_count() or 1)
@@ -81,7 +91,7 @@ def run(function: Callable[..., Any], threads: int, *arguments: Any) -> list[Any
     function: a compiled kernel that releases the interpreter's lock and raises nothing.
     """
     global _pool, _pool_size
-    sync = np.zeros(2, np.int64)
+    sync = np.zeros(3, np.int64)
     if threads == 1:
         return [function(0, 1, sync, *arguments)]
     if _pool is None or _pool_size < threads - 1:

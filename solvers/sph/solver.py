@@ -44,8 +44,7 @@ class Solver:
         self.builds = 0
         n = self.n = len(problem.x)
         self.threads = 1 if n < SMALL else max(1, min(threads or available(), available()))
-        densities = {b.density for b in problem.bodies}
-        self._mixed = len(densities) > 1 and not problem.potential and not problem.original
+        self._mixed = self._is_mixed()
         self._uniform_h = bool(np.all(problem.h == problem.h[0]))
         self._uniform_mass = bool(np.all(problem.mass == problem.mass[0]))
         self._radius = SUPPORT * float(problem.h.max())
@@ -70,6 +69,11 @@ class Solver:
         self._start_energy = self._energies()
 
     # what the run is
+
+    def _is_mixed(self) -> bool:
+        """Whether bodies of different density are each other's neighbours, and the sums are to suit that (see `pairs`)."""
+        p = self.problem
+        return len({b.density for b in p.bodies}) > 1 and not p.potential and not p.original
 
     def _make_numbers(self) -> Numbers:
         p = self.problem

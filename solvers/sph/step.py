@@ -10,15 +10,13 @@ positions, stresses and accelerations at t, velocities at t - dt_last/2. A step 
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numba.extending import overload
 
 from ..jit import kernel
 from ..materials.law import JIT_OPTIONS, rotate_state, stress_update
 from ..materials.rotation import spin_rotation
-from ..threads import barrier, share
+from ..threads import barrier, claim, share
 from . import pairs
 
 # entries of `progress`, the loop's own memory
@@ -27,6 +25,8 @@ PROGRESS = 7
 
 # why `advance` came back
 REACHED, PAUSED, REBUILD, BROKEN, COLLAPSED = range(5)
+
+CHUNK = 128  # particles that a thread takes on at a time
 
 LANDING = 8  # so many steps before a wanted time the step is trimmed to meet it
 GROWTH = 1.1  # a step grows by no more than this
@@ -257,6 +257,9 @@ def advance(
     time that is only to be passed.
     """
     i0, i1 = share(n, thread, threads)
+    chunk = n if threads == 1 else CHUNK
+    chunks = (n + chunk - 1) // chunk
+    taken = 0
     time = progress[TIME]
     last = progress[LAST]
     dt = progress[NEXT]
@@ -268,19 +271,30 @@ def advance(
     while True:
         if pending:
             if last > 0.0:
-                pairs.velocity_gradient(
-                    i0, i1, arrays.first, arrays.count, arrays.rows, arrays.x_half, arrays.y_half, solid,
-                    arrays.z_half, arrays.u, arrays.v, arrays.w, arrays.volume, h, numbers.inverse_h2,
-                    numbers.scale, line, arrays.gradient,
-                )  # fmt: skip
+                c = claim(sync, taken)
+                while c < chunks:
+                    pairs.velocity_gradient(
+                        c * chunk, min(n, (c + 1) * chunk), arrays.first, arrays.count, arrays.rows, arrays.x_half,
+                        arrays.y_half, solid, arrays.z_half, arrays.u, arrays.v, arrays.w, arrays.volume, h,
+                        numbers.inverse_h2, numbers.scale, line, arrays.gradient,
+                    )  # fmt: skip
+                    c = claim(sync, taken)
+                taken += chunks + threads
                 barrier(sync, threads)  # the strain of all particles needs the old volumes
                 _each_law(laws, 0, i0, i1, z, last, arrays, numbers)
                 for i in range(i0, i1):
                     arrays.volume[i] = arrays.mass[i] / arrays.density[i]
                 barrier(sync, threads)
-            arrays.reduced[thread, 2] = force(
-                i0, i1, z, h, mass, nearest, line, cx, potential, mixed, last, arrays, numbers
-            )
+            least = np.inf
+            c = claim(sync, taken)
+            while c < chunks:
+                part = force(
+                    c * chunk, min(n, (c + 1) * chunk), z, h, mass, nearest, line, cx, potential, mixed, last, arrays, numbers
+                )  # fmt: skip
+                least = min(least, part)
+                c = claim(sync, taken)
+            taken += chunks + threads
+            arrays.reduced[thread, 2] = least
             barrier(sync, threads)
             dt = numbers.step_factor * arrays.reduced[:threads, 2].min()
             if last > 0.0:
@@ -300,7 +314,7 @@ def advance(
         now = dt
         landed = False
         if not numbers.original:
-            whole = math.ceil(left / dt * (1.0 - 1e-9))
+            whole = np.ceil(left / dt * (1.0 - 1e-9))
             if whole <= LANDING:
                 now = left / whole
                 landed = whole == 1
