@@ -9,7 +9,10 @@ from numba.extending import intrinsic
 
 @intrinsic
 def bits_of(typing_context, value):
-    """The 64 bits of a float64 as int64. Positive numbers order as their bits do, and a minimum of integers vectorises."""
+    """The 64 bits of a float64 as int64.
+
+    Positive numbers order as their bits do, and a minimum of integers vectorises.
+    """
 
     def generate(context, builder, signature, arguments):
         return builder.bitcast(arguments[0], ir.IntType(64))

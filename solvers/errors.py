@@ -4,7 +4,10 @@ from __future__ import annotations
 
 
 class Diverged(RuntimeError):
-    """A run that cannot go on. step: steps done; item: particle or element number of the deck (0: none); cause: a sentence."""
+    """A run that cannot go on.
+
+    step: steps done; item: particle or element number of the deck (0: none); cause: a sentence.
+    """
 
     def __init__(self, step: int, item: int, cause: str) -> None:
         self.step = step

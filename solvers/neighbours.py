@@ -71,7 +71,7 @@ def _sift(i, m, candidates, x, y, z, h, reach, group, other, distance, out, at, 
         if z is not None:
             dz = z[i] - z[j]
             r2 += dz * dz
-        if h is not None:
+        if h is not None:  # noqa: SIM108  (numba prunes this branch where there is no h)
             radius = h[i] + h[j] + reach
         else:
             radius = reach
@@ -96,7 +96,10 @@ def _sift(i, m, candidates, x, y, z, h, reach, group, other, distance, out, at, 
 
 @kernel
 def _gaps(value, radius, origin, size, shape, gap):
-    """Squared distances from a coordinate to the cells within reach along one axis; returns the first cell, how many."""
+    """Squared distances from a coordinate to the cells within reach along one axis.
+
+    Returns the first cell, how many.
+    """
     c0 = _cell_of(value - radius, origin, 1.0 / size, shape)
     c1 = _cell_of(value + radius, origin, 1.0 / size, shape)
     for c in range(c0, c1 + 1):
@@ -232,9 +235,9 @@ def blocks(n: int) -> int:
 class Cells:
     """A grid of cells over a set of points, and the order that sorts the points by cell.
 
-    x, y, z: coordinates (>= n,), z None in the plane; radius: the largest search radius. Points far outside the bulk (the
-    outer per cent, where a plain box would need too many cells) fall into the outermost cells: a single runaway particle
-    costs nothing.
+    x, y, z: coordinates (>= n,), z None in the plane; radius: the largest search radius. Points far outside the bulk
+    (the outer per cent, where a plain box would need too many cells) fall into the outermost cells: a single runaway
+    particle costs nothing.
     """
 
     def __init__(self, n: int, x: Floats, y: Floats, z: Floats | None, radius: float) -> None:
@@ -301,8 +304,8 @@ class NeighbourList:
         needed = np.zeros(blocks(self.n), np.int64)
         while True:
             run(
-                _fill, threads, self.n, x, y, z, h, reach, radius, cells.origin, cells.size, cells.shape, cells.start, group, other,
-                self.first, self.count, self.rows, self._room, needed,
+                _fill, threads, self.n, x, y, z, h, reach, radius, cells.origin, cells.size, cells.shape, cells.start,
+                group, other, self.first, self.count, self.rows, self._room, needed,
             )  # fmt: skip
             if np.all(needed <= np.diff(self._room)):
                 return

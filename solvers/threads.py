@@ -1,9 +1,10 @@
 """Threads: one compiled function runs on all of them at once, and they meet at barriers.
 
-A parallel region of numba costs seconds to compile for loops with many arrays, and each phase of a step would need one. Here
-each thread runs the whole loop over its own range of particles without the interpreter's lock; between the phases of a step
-they wait for each other at a barrier of two atomic numbers, which costs about a microsecond. One writer an item and no sums across
-threads: results do not depend on their number. numba's own thread pool (and its OpenMP) is never started.
+A parallel region of numba costs seconds to compile for loops with many arrays, and each phase of a step would need one.
+Here each thread runs the whole loop over its own range of particles without the interpreter's lock; between the phases
+of a step they wait for each other at a barrier of two atomic numbers, which costs about a microsecond. One writer an
+item and no sums across threads: results do not depend on their number. numba's own thread pool (and its OpenMP) is
+never started.
 """
 
 from __future__ import annotations
@@ -74,8 +75,8 @@ def barrier(sync, threads):
 def claim(sync, taken):
     """The next piece of work that no thread has begun, or a number beyond the last when there is none left.
 
-    Pieces are handed out as they are asked for, so that a thread that is held up does not hold up the others. taken: tickets of
-    the phases before, their pieces and one more for each thread: every thread asks once in vain.
+    Pieces are handed out as they are asked for, so that a thread that is held up does not hold up the others. taken:
+    tickets of the phases before, their pieces and one more for each thread: every thread asks once in vain.
     """
     return _fetch_add(sync, 2, 1) - taken
 

@@ -26,7 +26,8 @@ class Steppable(Protocol):
 class Observer(Protocol):
     """Output, history, checkpoint, progress. interval: simulated time between calls; None: some times a second.
 
-    exact: whether it is called at the multiples of its interval, to which steps are trimmed, or at the first step after them.
+    exact: whether it is called at the multiples of its interval, to which steps are trimmed, or at the first step after
+    them.
     """
 
     interval: float | None
@@ -50,8 +51,8 @@ def next_time(now: float, interval: float) -> float:
 def run(solver: Steppable, observers: Sequence[Observer], until: float) -> None:
     """Bring a solver to the time `until`, calling each observer at the multiples of its interval or right after.
 
-    What an observer or the solver raises (a diverged run, an interrupt) goes through; between two returns the loop does at
-    most about PAUSE seconds of work.
+    What an observer or the solver raises (a diverged run, an interrupt) goes through; between two returns the loop does
+    at most about PAUSE seconds of work.
     """
     for observer in observers:
         observer.start(solver)

@@ -1,8 +1,8 @@
 """Repulsive contact by a potential of the kernel (Vignjevic et al. 2006; [T] 5.3.7-13; the deck's contact type 1).
 
-a_i = - sum_j m_j (K_i + K_j) f^n grad_i W(r_ij, h_ij), f = W(r)/W(h) of the mean smoothing length h_ij, over particles j of
-other bodies. K [pressure/density^2], n [-]: contact strength and exponent; the pair's exponent is the mean of both, so
-that action equals reaction.
+a_i = - sum_j m_j (K_i + K_j) f^n grad_i W(r_ij, h_ij), f = W(r)/W(h) of the mean smoothing length h_ij, over particles
+j of other bodies. K [pressure/density^2], n [-]: contact strength and exponent; the pair's exponent is the mean of
+both, so that action equals reaction.
 """
 
 from __future__ import annotations

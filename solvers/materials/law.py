@@ -1,10 +1,10 @@
 """The contract of every small-strain material law, and its dispatch.
 
-A law is a NamedTuple of its numbers. Jitted loops call the two functions below with it; `numba.extending.overload` picks
-the body by the tuple's class, so a loop is compiled for the law that a scene uses and still cached on disk.
+A law is a NamedTuple of its numbers. Jitted loops call the two functions below with it; `numba.extending.overload`
+picks the body by the tuple's class, so a loop is compiled for the law that a scene uses and still cached on disk.
 
-Stress: six components xx yy zz xy yz zx, tension positive. Strain increments: six tensor components (not doubled shears)
-in the same order. state: (k, n) history variables, column i belongs to the point; None where a law has none.
+Stress: six components xx yy zz xy yz zx, tension positive. Strain increments: six tensor components (not doubled
+shears) in the same order. state: (k, n) history variables, column i belongs to the point; None where a law has none.
 """
 
 from __future__ import annotations
@@ -26,7 +26,10 @@ def is_law(numba_type: Any, law: type) -> bool:
 
 
 def stress_update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, state, i):
-    """New stress (6 components) and the energy that plastic flow dissipates per unit volume of one strain increment; updates state[:, i]."""
+    """New stress (6 components) and the energy that plastic flow dissipates per unit volume of one strain increment.
+
+    Updates state[:, i].
+    """
     raise NotImplementedError("called from jitted code only; `point.drive` is for Python")
 
 

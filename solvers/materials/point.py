@@ -41,8 +41,8 @@ def drive(
 ) -> tuple[Floats, Floats, Floats]:
     """Stresses, states and dissipated energies along a path.
 
-    strain: increments (m, 6), tensor components xx yy zz xy yz zx; spin: increments (m, 3) xy yz zx; stress: the first one (6,).
-    Returns (m, 6) [pressure], (m, rows of the law's state), (m,) energy per volume of each increment.
+    strain: increments (m, 6), tensor components xx yy zz xy yz zx; spin: increments (m, 3) xy yz zx; stress: the first
+    one (6,). Returns (m, 6) [pressure], (m, rows of the law's state), (m,) energy per volume of each increment.
     """
     m = len(strain)
     state = np.zeros((max(1, state_rows(law)), 1))

@@ -1,7 +1,7 @@
 """Von Mises plasticity with linear mixed hardening, radial return ([T] 4.6.2; Krieg & Key 1976).
 
-Yield: sqrt(3/2) |s - a| <= Y0 + beta H ep, back stress a growing by (1 - beta) H of the plastic strain, H = E ET / (E - ET).
-beta = 1 isotropic, 0 kinematic. Steps of the return:
+Yield: sqrt(3/2) |s - a| <= Y0 + beta H ep, back stress a growing by (1 - beta) H of the plastic strain,
+H = E ET / (E - ET). beta = 1 isotropic, 0 kinematic. Steps of the return:
 1. trial deviator s* = s + 2 G de', relative to the back stress: xi = s* - a, xi_eq = sqrt(3/2) |xi|
 2. dep = (xi_eq - Y) / (3 G + H) if positive
 3. s = s* - (3 G dep / xi_eq) xi,  a += ((1 - beta) H dep / xi_eq) xi,  Y += beta H dep

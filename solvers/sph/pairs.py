@@ -1,13 +1,13 @@
 """Pair loops over the Verlet list: velocity gradient, momentum, contact, interface force.
 
 Each is a serial function over a block of particles with one contiguous, branch-free inner loop that vectorises; what a
-scene does not have is None and is left out when the loop is compiled: z and w in the plane, h where all smoothing lengths
-are equal, mass where all masses are equal, nearest where the time step does not ask for it. Arrays have one more entry than
-there are particles: the dummy that pads the rows, far away.
+scene does not have is None and is left out when the loop is compiled: z and w in the plane, h where all smoothing
+lengths are equal, mass where all masses are equal, nearest where the time step does not ask for it. Arrays have one
+more entry than there are particles: the dummy that pads the rows, far away.
 
-Shapes: x, y, z, u, v, w, h, mass, volume (n + 1,); gradient (d*d, n + 1) rows du/dx du/dy (du/dz) dv/dx ...; s (k, n + 1) with k = 6
-(xx yy zz xy yz zx) or 3 (xx yy xy) in the plane: (sigma - q I)/rho^2. scale is a_d / h^(d+2), or a_d alone where h is given; a line (one dimension) runs as
-a plane with y = 0 and says so by `line`.
+Shapes: x, y, z, u, v, w, h, mass, volume (n + 1,); gradient (d*d, n + 1) rows du/dx du/dy (du/dz) dv/dx ...; s
+(k, n + 1) with k = 6 (xx yy zz xy yz zx) or 3 (xx yy xy) in the plane: (sigma - q I)/rho^2. scale is a_d / h^(d+2), or
+a_d alone where h is given; a line (one dimension) runs as a plane with y = 0 and says so by `line`.
 """
 
 from __future__ import annotations
@@ -134,9 +134,9 @@ def momentum(
     """a_i = sum_j m_j (s_i + s_j) . grad_i W_ij + g: the sum form that conserves momentum pair by pair.
 
     weight: masses, or None where all are equal and in the scale. Where bodies differ in density the sum is
-    a_i = sum_j V_j (sigma_i + sigma_j) / rho_i . grad_i W_ij instead: the one whose work is that of the velocity gradient above;
-    then s is the stress, the weights are the volumes and density is given. nearest: None, or (n + 1,) the squared distance to the
-    nearest listed particle.
+    a_i = sum_j V_j (sigma_i + sigma_j) / rho_i . grad_i W_ij instead: the one whose work is that of the velocity
+    gradient above; then s is the stress, the weights are the volumes and density is given. nearest: None, or (n + 1,)
+    the squared distance to the nearest listed particle.
     """
     if z is not None:
         sxx = s[0]
@@ -248,8 +248,8 @@ def contact_acceleration(
 ):
     """Adds the repulsive contact (`contact.potential`) to the acceleration, and keeps it in cx, cy, cz.
 
-    h, mass: (n + 1,). volume_exponent: -(d + 2); normal: a_d of the spline. strength, exponent: K and n of each material. original: as the original
-    program codes it (n of particle i's material, its divisor of f).
+    h, mass: (n + 1,). volume_exponent: -(d + 2); normal: a_d of the spline. strength, exponent: K and n of each
+    material. original: as the original program codes it (n of particle i's material, its divisor of f).
     """
     for i in range(i0, i1):
         a0 = 0.0

@@ -18,8 +18,8 @@ STEP_OPTIONS = {0: "length/viscous wave speed", 1: "h/(c + |v|)", 2: "nearest di
 class Body:
     """One material and the particles that own it.
 
-    number: of the deck; law: of `zrno.solvers.materials`; density [mass/length^3]; linear, quadratic: artificial viscosity [-];
-    least, most: limits of the density; strength, exponent: of the repulsive contact.
+    number: of the deck; law: of `zrno.solvers.materials`; density [mass/length^3]; linear, quadratic: artificial
+    viscosity [-]; least, most: limits of the density; strength, exponent: of the repulsive contact.
     """
 
     number: int
@@ -38,11 +38,11 @@ class Body:
 class Problem:
     """A set of particles and how it moves.
 
-    x, v: (n, 3) positions and velocities, unused components zero; mass, h, density, energy (specific): (n,); body: (n,) index into
-    `bodies`; fixed: (n, 3) directions that do not move; id: (n,) numbers of the deck. dimension 1, 2 (plane strain) or 3.
-    step_option: see STEP_OPTIONS; step_factor: of the critical step; first_step: 0 for automatic. potential: bodies repel by the contact
-    potential; otherwise they are ordinary neighbours (kernel contact). body_force: acceleration (3,). original: do as the
-    original program does where that differs.
+    x, v: (n, 3) positions and velocities, unused components zero; mass, h, density, energy (specific): (n,); body: (n,)
+    index into `bodies`; fixed: (n, 3) directions that do not move; id: (n,) numbers of the deck. dimension 1, 2 (plane
+    strain) or 3. step_option: see STEP_OPTIONS; step_factor: of the critical step; first_step: 0 for automatic.
+    potential: bodies repel by the contact potential; otherwise they are ordinary neighbours (kernel contact).
+    body_force: acceleration (3,). original: do as the original program does where that differs.
     """
 
     dimension: int

@@ -1,4 +1,6 @@
-"""The particle solver: owns the state, the neighbour lists and the loop's memory; shows frames, history and checkpoints.
+"""The particle solver.
+
+Owns the state, the neighbour lists and the loop's memory; shows frames, history and checkpoints.
 
 With `original` the states are the same kind, but labelled as the original program labels them: at an output "at t" its
 positions are those of t - dt and its velocities those of the half step before.
@@ -71,7 +73,10 @@ class Solver:
     # what the run is
 
     def _is_mixed(self) -> bool:
-        """Whether bodies of different density are each other's neighbours, and the sums are to suit that (see `pairs`)."""
+        """Whether bodies of different density are each other's neighbours.
+
+        The sums are then to suit that (see `pairs`).
+        """
         p = self.problem
         return len({b.density for b in p.bodies}) > 1 and not p.potential and not p.original
 
@@ -253,7 +258,10 @@ class Solver:
         )
 
     def _rebuild(self, *, sort: bool = True) -> None:
-        """Sort the particles by cell and list their neighbours; sort False: from where the last list was built, as it was."""
+        """Sort the particles by cell and list their neighbours.
+
+        sort False: from where the last list was built, as it was.
+        """
         s, n = self._state, self.n
         if sort:
             s.rows("x_list")[:] = s.rows("x")
@@ -293,8 +301,8 @@ class Solver:
         return Diverged(
             self.step + 1,
             int(self._state.id[i]),
-            "it moved further than its smoothing length in one step, or its velocity is not a number: the step factor may be "
-            "too large, two particles coincide, or the material is stretched apart",
+            "it moved further than its smoothing length in one step, or its velocity is not a number: the step factor "
+            "may be too large, two particles coincide, or the material is stretched apart",
         )
 
     def _collapsed(self) -> Diverged:
@@ -305,7 +313,10 @@ class Solver:
             i = int(np.argmin(s.rows("nearest")[0, :n]))
             item = int(s.id[i])
             distance = math.sqrt(s.rows("nearest")[0, i])
-            cause += f" to {self.dt:.3g}: its nearest neighbour is only {distance:.3g} away (two particles coincide or clump)"
+            cause += (
+                f" to {self.dt:.3g}: its nearest neighbour is only {distance:.3g} away "
+                "(two particles coincide or clump)"
+            )
         return Diverged(self.step, item, cause)
 
     # what it shows
@@ -392,8 +403,8 @@ class Solver:
     def history(self) -> dict[str, float]:
         """One row of history.csv: energies, momentum, the contact force on the first material.
 
-        `internal` is elastic and dissipated energy together, `dissipated` the part that plastic flow and viscosity took;
-        kinetic + internal + contact_energy - external_work stays constant.
+        `internal` is elastic and dissipated energy together, `dissipated` the part that plastic flow and viscosity
+        took; kinetic + internal + contact_energy - external_work stays constant.
         """
         s, n = self._state, self.n
         energies = self._energies()
@@ -415,7 +426,10 @@ class Solver:
         }
 
     def energy_report(self) -> dict[str, float]:
-        """Energies at the start and now; balance_error is relative to the largest of kinetic, internal and external work."""
+        """Energies at the start and now.
+
+        balance_error is relative to the largest of kinetic, internal and external work.
+        """
 
         start, now = self._start_energy, self._energies()
         scale = max(start["kinetic"], now["kinetic"], abs(now["internal"]), abs(now["external_work"]), 1e-300)

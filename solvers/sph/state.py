@@ -16,12 +16,12 @@ Floats = NDArray[np.float64]
 class Arrays(NamedTuple):
     """Rows of the state that the loops see, each (n + 1,) or (k, n + 1); entry n is the dummy that pads neighbour rows.
 
-    x y z, x_half.. (half a step back), x_list.. (where the list was built), x_start..: positions; u v w: velocities at the
-    half step before; ax..: accelerations; stress (6 or 4: xx yy zz xy (yz zx)); gradient: of the velocity; s: (sigma - q I)/rho^2;
-    density, volume m/rho, mass, h, energy, dissipated (per unit mass); viscosity: pressure q; nearest: squared distance; cx..: contact acceleration;
-    contact_work: work of contact on a particle; state: the laws' history; id, material, fixed (bits x y z): integers;
-    first, count, rows: the neighbour list; c_first, c_count, c_rows: the list of other bodies; reduced: (threads, .)
-    what each thread found.
+    x y z, x_half.. (half a step back), x_list.. (where the list was built), x_start..: positions; u v w: velocities at
+    the half step before; ax..: accelerations; stress (6 or 4: xx yy zz xy (yz zx)); gradient: of the velocity; s:
+    (sigma - q I)/rho^2; density, volume m/rho, mass, h, energy, dissipated (per unit mass); viscosity: pressure q;
+    nearest: squared distance; cx..: contact acceleration; contact_work: work of contact on a particle; state: the laws'
+    history; id, material, fixed (bits x y z): integers; first, count, rows: the neighbour list; c_first, c_count,
+    c_rows: the list of other bodies; reduced: (threads, .) what each thread found.
     """
 
     x: Any
@@ -70,8 +70,9 @@ class Arrays(NamedTuple):
 class Numbers(NamedTuple):
     """The constants of a run.
 
-    mixed: bodies of different density are neighbours. scale, force_scale: see `pairs`, the latter times the mass where all are equal; normal: a_d. viscous: (bodies, 4) linear
-    coefficient times c, quadratic, density limits; wave: (bodies,) speeds; strength, exponent: (bodies,) of the contact.
+    mixed: bodies of different density are neighbours. scale, force_scale: see `pairs`, the latter times the mass where
+    all are equal; normal: a_d. viscous: (bodies, 4) linear coefficient times c, quadratic, density limits; wave:
+    (bodies,) speeds; strength, exponent: (bodies,) of the contact.
     """
 
     dimension: int
@@ -113,7 +114,8 @@ class State:
         self.d = d
         sizes = {
             "x": d, "u": d, "a": d, "x_half": d, "x_list": d, "x_start": d, "stress": 6 if solid else 4,
-            "density": 1, "volume": 1, "mass": 1, "h": 1, "energy": 1, "dissipated": 1, "viscosity": 1, "contact_work": int(contact), "state": state_rows,
+            "density": 1, "volume": 1, "mass": 1, "h": 1, "energy": 1, "dissipated": 1, "viscosity": 1,
+            "contact_work": int(contact), "state": state_rows,
             "gradient": d * d, "s": 6 if solid else 3, "nearest": 1, "c": d if contact else 0,
         }  # fmt: skip
         self.slices: dict[str, slice] = {}

@@ -1,7 +1,7 @@
 """One time step: what happens at a particle, and the order of the phases.
 
-Leap-frog: positions and stresses live at whole steps, velocities at half steps. The invariant between steps, "synchronised":
-positions, stresses and accelerations at t, velocities at t - dt_last/2. A step then is
+Leap-frog: positions and stresses live at whole steps, velocities at half steps. The invariant between steps,
+"synchronised": positions, stresses and accelerations at t, velocities at t - dt_last/2. A step then is
     v += a (dt_last + dt)/2, x += dt v                                     kick and drift, to t + dt
     grad v at x - dt v/2, density, rotation, stress, viscosity, energy     strain
     a, nearest distance, contact, the next dt                              force
@@ -123,8 +123,8 @@ def constitutive(i0, i1, z, number, law, dt, arrays, numbers):
 def kick_and_drift(i0, i1, z, cx, kick, dt, arrays):
     """v += a kick, x += v dt; directions in the mask `fixed` (bits x y z) do not move.
 
-    Returns the largest squared distance from where the list was built, and the index of a particle that moved further than
-    its smoothing length or whose velocity is not a number (-1: none).
+    Returns the largest squared distance from where the list was built, and the index of a particle that moved further
+    than its smoothing length or whose velocity is not a number (-1: none).
     """
     x, y, u, v = arrays.x, arrays.y, arrays.u, arrays.v
     largest = 0.0
@@ -167,7 +167,10 @@ def kick_and_drift(i0, i1, z, cx, kick, dt, arrays):
 
 @kernel
 def critical_step(i0, i1, z, numbers, arrays):
-    """The smallest stable step of a block by the deck's option: 1 h/(c+|v|), 2 nearest distance/(c+|v|), 0 by viscosity."""
+    """The smallest stable step of a block by the deck's option.
+
+    1 h/(c+|v|), 2 nearest distance/(c+|v|), 0 by viscosity.
+    """
     option = numbers.step_option
     viscous = numbers.viscous
     least = np.inf
@@ -247,14 +250,14 @@ def _unrolled(laws, number, i0, i1, z, dt, arrays, numbers):
 
 @kernel
 def advance(
-    thread, threads, sync, n, solid, z, h, mass, nearest, line, cx, potential, mixed, arrays, numbers, laws, progress, until, pause, steps,
-    reach2,
+    thread, threads, sync, n, solid, z, h, mass, nearest, line, cx, potential, mixed, arrays, numbers, laws, progress,
+    until, pause, steps, reach2,
 ):  # fmt: skip
     """Take up to `steps` steps towards `until`, each thread for its own range; returns why it stopped.
 
-    Every thread decides alike, from the same numbers. reach2: squared half skin of the list. Times are met exactly, except
-    where the original program is followed: there `until` is a label, the time of the step to come (see `solver`). pause: a
-    time that is only to be passed.
+    Every thread decides alike, from the same numbers. reach2: squared half skin of the list. Times are met exactly,
+    except where the original program is followed: there `until` is a label, the time of the step to come (see
+    `solver`). pause: a time that is only to be passed.
     """
     i0, i1 = share(n, thread, threads)
     chunk = n if threads == 1 else CHUNK
@@ -289,7 +292,8 @@ def advance(
             c = claim(sync, taken)
             while c < chunks:
                 part = force(
-                    c * chunk, min(n, (c + 1) * chunk), z, h, mass, nearest, line, cx, potential, mixed, last, arrays, numbers
+                    c * chunk, min(n, (c + 1) * chunk), z, h, mass, nearest, line, cx, potential, mixed, last,
+                    arrays, numbers,
                 )  # fmt: skip
                 least = min(least, part)
                 c = claim(sync, taken)

@@ -2,8 +2,9 @@
 
     python tests/benchmarks/bench_sph.py [particles]
 
-The scene is two elastic blocks that meet (20 000 particles in 3D, about 58 neighbours, 72 with the skin), the deck on which MCM makes
-0.117 million particle-steps a CPU-second. Sorting and list building are included, compiling is not. Run it on a quiet machine.
+The scene is two elastic blocks that meet (20 000 particles in 3D, about 58 neighbours, 72 with the skin), the deck on
+which MCM makes 0.117 million particle-steps a CPU-second. Sorting and list building are included, compiling is not. Run
+it on a quiet machine.
 """
 
 from __future__ import annotations
@@ -21,8 +22,7 @@ import numpy as np  # noqa: E402  (the clock starts before the imports)
 from zrno.solvers.jit import compile_seconds  # noqa: E402
 from zrno.solvers.materials import Elastic  # noqa: E402
 from zrno.solvers.neighbours import Cells  # noqa: E402
-from zrno.solvers.sph import Body, Problem, Solver  # noqa: E402
-from zrno.solvers.sph import pairs, step  # noqa: E402
+from zrno.solvers.sph import Body, Problem, Solver, pairs, step  # noqa: E402
 
 STEPS = 100
 
@@ -38,8 +38,9 @@ def blocks(particles: int) -> Problem:
     v[:half, 2], v[half:, 2] = 0.01, -0.01
     law = Elastic.from_engineering(0.7, 0.33)
     return Problem(
-        dimension=3, x=x, v=v, mass=np.full(2 * half, 2.7e-3), h=np.full(2 * half, 0.12), density=np.full(2 * half, 2.7),
-        body=np.repeat([0, 1], half), bodies=tuple(Body(i, "block", law, 2.7, 0.5, 2.0) for i in (1, 2)), end_time=1e9,
+        dimension=3, x=x, v=v, mass=np.full(2 * half, 2.7e-3), h=np.full(2 * half, 0.12),
+        density=np.full(2 * half, 2.7), body=np.repeat([0, 1], half),
+        bodies=tuple(Body(i, "block", law, 2.7, 0.5, 2.0) for i in (1, 2)), end_time=1e9,
     )  # fmt: skip
 
 
@@ -109,7 +110,8 @@ def main(particles: int) -> None:
     for threads, found in results.items():
         wall, cpu, builds = (statistics.median(column) for column in zip(*found, strict=True))
         print(
-            f"{n} particles, {threads} thread(s): {wall / 1e6:.2f} M/s wall, {cpu / 1e6:.2f} M/s CPU, {builds:.2f} lists a step"
+            f"{n} particles, {threads} thread(s): {wall / 1e6:.2f} M/s wall, {cpu / 1e6:.2f} M/s CPU, "
+            f"{builds:.2f} lists a step"
         )
     print(
         f"two threads against one: {statistics.median(b[0] / a[0] for a, b in zip(*results.values(), strict=True)):.2f}"

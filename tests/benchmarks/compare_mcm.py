@@ -2,8 +2,9 @@
 
     python tests/benchmarks/compare_mcm.py ../shared/reference/mcm
 
-RMS over the particles at the saved outputs, the largest of them: positions in per cent of h, velocities of the impact speed, von
-Mises stress of its largest value. MCM's positions at a label t are those of t - dt, its velocities those of half a step before.
+RMS over the particles at the saved outputs, the largest of them: positions in per cent of h, velocities of the impact
+speed, von Mises stress of its largest value. MCM's positions at a label t are those of t - dt, its velocities those of
+half a step before.
 """
 
 from __future__ import annotations

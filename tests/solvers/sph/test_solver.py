@@ -166,7 +166,10 @@ def test_free_fall_and_fixed_directions() -> None:
 
 
 def bars(n: int) -> tuple[float, float]:
-    """Symmetric impact of two unit bars of n particles in uniaxial strain: plateau stress / (rho c v), front / (c t)."""
+    """Symmetric impact of two unit bars of n particles in uniaxial strain.
+
+    Returns plateau stress / (rho c v), front / (c t).
+    """
     dx, speed = 1.0 / n, 1e-4
     x = np.zeros((2 * n, 3))
     x[:, 0] = (np.arange(2 * n) + 0.5 - n) * dx
@@ -188,8 +191,8 @@ def bars(n: int) -> tuple[float, float]:
 def test_a_bar_wave_has_its_speed_and_stress() -> None:
     """d'Alembert: the stress is rho c v between the fronts at +- c t, c being that of the lattice.
 
-    On a regular lattice the sums see a gradient times b = sum V_j |x_ij . grad W|, in strain and in force alike, so that
-    waves run at b c: 2.2 % too fast with h = 1.2 dx in one dimension.
+    On a regular lattice the sums see a gradient times b = sum V_j |x_ij . grad W|, in strain and in force alike, so
+    that waves run at b c: 2.2 % too fast with h = 1.2 dx in one dimension.
     """
     q = np.arange(1, 3) / 1.2
     b = sum(-2.0 * normaliser(1) * spline_slope(r, 1.0 / r) * r * r / 1.2 for r in q)
@@ -226,8 +229,9 @@ def test_stress_turns_with_the_body() -> None:
     v[:, 0], v[:, 1] = -x[:, 1], x[:, 0]
     n = len(x)
     problem = Problem(
-        dimension=2, x=x, v=v, mass=np.full(n, 0.01), h=np.full(n, 0.12), density=np.ones(n), body=np.zeros(n, np.int64),
-        bodies=(Body(1, "plate", Elastic(1e-9, 1e-9), 1.0),), end_time=1.0, first_step=1e-4, step_option=1, step_factor=1e-9,
+        dimension=2, x=x, v=v, mass=np.full(n, 0.01), h=np.full(n, 0.12), density=np.ones(n),
+        body=np.zeros(n, np.int64), bodies=(Body(1, "plate", Elastic(1e-9, 1e-9), 1.0),), end_time=1.0,
+        first_step=1e-4, step_option=1, step_factor=1e-9,
     )  # fmt: skip
     solver = Solver(problem)
     solver._state.rows("stress")[0] = 1e-3
