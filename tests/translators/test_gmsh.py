@@ -1,5 +1,9 @@
 from __future__ import annotations
 
+import signal
+import subprocess
+import sys
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -194,6 +198,34 @@ def test_a_geometry_is_meshed_with_its_parameters(tmp_path: Path) -> None:
     assert read(mesh).bounding_box() == [[0, 0, 0], [3, 1, 1]]
     mesh.unlink()
     mesh.parent.rmdir()
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGPIPE"), reason="this system has no SIGPIPE")
+def test_a_broken_pipe_stays_an_exception_after_meshing(tmp_path: Path) -> None:
+    (tmp_path / "box.geo").write_text(GEO)
+    script = """
+import os, sys
+from zrno.translators.gmsh.geo import read
+read(sys.argv[1])
+reader, writer = os.pipe()
+os.close(reader)
+try:
+    os.write(writer, b"frame")
+except BrokenPipeError:
+    sys.exit(5)
+"""
+    assert subprocess.run([sys.executable, "-c", script, tmp_path / "box.geo"]).returncode == 5
+
+
+def test_a_geometry_is_meshed_outside_the_main_thread(tmp_path: Path) -> None:
+    (tmp_path / "box.geo").write_text(GEO)
+    models = []
+    before = signal.getsignal(signal.SIGPIPE)
+    thread = threading.Thread(target=lambda: models.append(read_geo(tmp_path / "box.geo")))
+    thread.start()
+    thread.join()
+    signal.signal(signal.SIGPIPE, before)
+    assert models[0].bounding_box() == [[0, 0, 0], [3, 1, 1]]
 
 
 def test_a_geometrys_errors_have_their_line(faults) -> None:

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import re
+import signal
 import tempfile
-from collections.abc import Mapping
+import threading
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -47,7 +50,8 @@ def mesh_geo(path: Path | str, *, numbers: Mapping[str, float] | None = None) ->
             [Fault(str(path), line, 1, "gmsh skips a last line without an end", last, "a newline after it")]
         )
     gmsh = _gmsh()
-    gmsh.initialize(readConfigFiles=False, interruptible=False)
+    with _pipe_signal_kept():
+        gmsh.initialize(readConfigFiles=False, interruptible=False)
     try:
         # the option -setnumber would outlive gmsh.finalize, and gmsh.open would forget the parser's numbers
         for name, value in (numbers or {}).items():
@@ -72,6 +76,24 @@ def mesh_geo(path: Path | str, *, numbers: Mapping[str, float] | None = None) ->
         gmsh.parser.clear()
         gmsh.finalize()
     return target
+
+
+@contextmanager
+def _pipe_signal_kept() -> Iterator[None]:
+    """Put back what a broken pipe does: an exception in Python; gmsh resets it to the end of the process.
+
+    Only the main thread may set it; elsewhere, and where there is no such signal, gmsh has its way.
+    """
+    number = getattr(signal, "SIGPIPE", None)
+    if number is None or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    handler = signal.getsignal(number)
+    try:
+        yield
+    finally:
+        if handler is not None:  # None: set by other means than Python's
+            signal.signal(number, handler)
 
 
 def _gmsh() -> Any:
