@@ -75,7 +75,7 @@ def kernel(function: Function) -> Any:
     return numba.njit(cache=True, fastmath=FASTMATH, error_model="numpy", nogil=True)(function)
 
 
-class _CompileClock(event.Listener):
+class _CompileClock(event.Listener):  # type: ignore[misc]  # numba is untyped here (pyproject.toml)
     """Adds up the seconds that the outermost compilations take."""
 
     def __init__(self) -> None:
