@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from zrno.solvers.sph import Solver
+    from zrno.solvers.time import Observer
 
 FRAMES = 20  # frames of a run whose deck names no interval
 ROWS = 10  # rows of history a frame, where the deck names no interval for them
@@ -46,10 +47,10 @@ def run(
 ) -> dict[str, Any]:
     """Run one particle deck or a scene; returns the keys of `zrno run --json`.
 
-    output: result folder (default: the input's name and `_results`, in the working folder). threads: None for all, or one
-    for few particles. until: stop at this simulated time. resume: go on from the newest checkpoint of the folder, if it has
-    one. options: by dotted key, as `--set` takes them (`compat=original`, scene keys, settings). quiet: no message on
-    stderr; progress: a bar there.
+    output: result folder (default: the input's name and `_results`, in the working folder). threads: None for all, or
+    one for few particles. until: stop at this simulated time. resume: go on from the newest checkpoint of the folder,
+    if it has one. options: by dotted key, as `--set` takes them (`compat=original`, scene keys, settings). quiet: no
+    message on stderr; progress: a bar there.
 
     Raises InputError for bad input (nothing is written then), `Diverged` for a run that cannot go on, KeyboardInterrupt
     after the checkpoint of an interrupted one.
@@ -64,13 +65,15 @@ def run(
 
     started = time.perf_counter()
     from zrno.solvers.jit import compile_seconds
+    from zrno.solvers.time import run as run_to_end
 
     solver, state = _solver(model, deck, directory, chosen.run, threads, resume)
     end = model.particle_control.end_time if model.particle_control else 0.0
     end = end if until is None else min(end, until)
 
     series, history, checkpointer = _observers(model, scene, directory, end, digests([deck]), resume=state is not None)
-    watchers = [series, history, checkpointer, Progress(end, show=progress)]
+    bar = Progress(end, show=progress)
+    watchers: list[Observer] = [series, history, checkpointer, bar]
     result: dict[str, Any] = {}
     with _log_file(directory, append=state is not None):
         manifest = Manifest(
@@ -86,10 +89,8 @@ def run(
         log.info("%s: %d particles, end time %g; built for %s", deck.name, solver.n, end, solver.kernels())
         steps_before = solver.step
         status = "failed"
+        loop = time.perf_counter()
         try:
-            from zrno.solvers.time import run as run_to_end
-
-            loop = time.perf_counter()
             run_to_end(solver, watchers, end)
             status = "done"
         except KeyboardInterrupt:
@@ -101,7 +102,7 @@ def run(
             log.error("%s", error)
             raise
         finally:
-            watchers[-1].finish(solver)
+            bar.finish(solver)
             seconds = time.perf_counter() - loop
             result = {
                 "status": status,
@@ -211,7 +212,8 @@ def _pictures(scene: Scene | None, directory: Path, warnings: list[str]) -> list
         from zrno.pipelines.render import render
 
         try:
-            drawn += [str(p) for p in render(directory, field=picture.field, time=picture.time, view=picture.view)]
+            files = render(directory, field=picture.field, time=picture.time, view=picture.view, size=picture.size)
+            drawn += [str(file) for file in files]
         except Missing as error:
             warnings.append(str(error))
             log.warning("%s", error)

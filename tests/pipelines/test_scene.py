@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -278,6 +279,16 @@ def test_several_meshes_become_one(tmp_path: Path) -> None:
     assert whole.blocks[1].nodes.min() == 4
     with pytest.raises(ValueError, match="particle deck"):
         merge([one, _deck()])
+
+
+def test_a_scenes_pictures_are_drawn_as_it_says(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from zrno.pipelines.run import _pictures
+
+    asked: list[dict[str, Any]] = []
+    monkeypatch.setattr("zrno.pipelines.render.render", lambda folder, **options: asked.append(options) or [])
+    text = GOOD.replace("{time: 0.5}", "{field: pressure, time: 0.5, view: x, size: [640, 480]}")
+    _pictures(scene.load(_scene(tmp_path, text)), tmp_path, [])
+    assert asked[1] == {"field": "pressure", "time": 0.5, "view": "x", "size": (640, 480)}
 
 
 def _deck() -> Model:
