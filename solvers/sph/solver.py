@@ -24,7 +24,7 @@ from .problem import STEP_OPTIONS, Problem
 from .smoothing import SUPPORT, normaliser
 from .state import Arrays, Numbers, State
 
-SKIN = 0.2  # of the largest h: the list's spare radius
+SKIN = 0.25  # of the largest h: the list's spare radius
 CHECKED = 50  # steps between looks at the energy balance
 CREATED = 3.0  # so many times the energy put in cannot come out of a stable run
 SMALL = 2000  # fewer particles run on one thread: a parallel region costs more than it saves
