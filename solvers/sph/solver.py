@@ -19,7 +19,7 @@ from ..frame import Frame
 from ..materials import PLASTIC_STRAIN, sound_speed, state_rows
 from ..neighbours import FAR, Cells, NeighbourList
 from ..threads import available, run
-from . import pairs, step
+from . import measures, pairs, step
 from .problem import STEP_OPTIONS, Problem
 from .smoothing import SUPPORT, normaliser
 from .state import Arrays, Numbers, State
@@ -30,11 +30,6 @@ CREATED = 3.0  # so many times the energy put in cannot come out of a stable run
 SMALL = 2000  # fewer particles run on one thread: a parallel region costs more than it saves
 
 Floats = NDArray[np.float64]
-
-
-def _total(energies: dict[str, float]) -> float:
-    """What stays constant."""
-    return energies["kinetic"] + energies["internal"] + energies["contact_energy"] - energies["external_work"]
 
 
 class Solver:
@@ -285,7 +280,7 @@ class Solver:
         """An unstable step makes energy out of nothing, long before a number overflows."""
         start, now = self._start_energy, self._energies()
         given = start["kinetic"] + abs(start["internal"]) + abs(now["external_work"])
-        made = _total(now) - _total(start)
+        made = measures.total(now) - measures.total(start)
         if not made <= CREATED * given:
             s, n = self._state, self.n
             kinetic = s.rows("mass")[0, :n] * np.sum(s.rows("u")[:, :n] ** 2, axis=0)
@@ -321,9 +316,6 @@ class Solver:
 
     # what it shows
 
-    def _deck_order(self) -> NDArray[np.int64]:
-        return np.argsort(self._state.id[: self.n], kind="stable")
-
     def _velocity(self) -> Floats:
         """(d, n) velocities at the time of the positions; with `original` those of the half step before."""
         s, n = self._state, self.n
@@ -335,55 +327,11 @@ class Solver:
 
     def frame(self) -> Frame:
         """The state now, in the order of the deck."""
-        p, s, n = self.problem, self._state, self.n
-        order = self._deck_order()
-
-        def vectors(rows: Floats) -> Floats:
-            full = np.zeros((n, 3))
-            full[:, : s.d] = rows[:, order].T
-            return full
-
-        stress = np.zeros((n, 6))
-        rows = s.rows("stress")[:, :n]
-        stress[:, : len(rows)] = rows[:, order].T
-        xx, yy, zz, xy, yz, zx = stress.T
-        shear = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3.0 * (xy**2 + yz**2 + zx**2)
-        volume = s.rows("mass")[0, :n] / s.rows("density")[0, :n]
-        radius = {1: 0.5 * volume, 2: np.sqrt(volume / math.pi), 3: np.cbrt(0.75 * volume / math.pi)}[p.dimension]
-        plastic = s.rows("state")[PLASTIC_STRAIN, :n][order] if len(s.rows("state")) else np.zeros(n)
-        numbers = np.array([b.number for b in p.bodies])
-        x = s.rows("x")[:, :n]
-        return Frame(
-            time=self.time,
-            step=self.step,
-            particles={
-                "id": s.id[:n][order],
-                "material": numbers[s.material[:n][order]],
-                "position": vectors(x),
-                "velocity": vectors(self._velocity()),
-                "density": s.rows("density")[0, :n][order],
-                "mass": s.rows("mass")[0, :n][order],
-                "radius": radius[order],
-                "pressure": -(xx + yy + zz) / 3.0,
-                "stress": stress,
-                "von_mises": np.sqrt(shear),
-                "plastic_strain": plastic,
-                "displacement": vectors(x - s.rows("x_start")[:, :n]),
-            },
-        )
+        arrays = measures.particles(self.problem, self._state, self._velocity())
+        return Frame(time=self.time, step=self.step, particles=arrays)
 
     def _energies(self) -> dict[str, float]:
-        p, s, n = self.problem, self._state, self.n
-        mass = s.rows("mass")[0, :n]
-        moved = s.rows("x")[:, :n] - s.rows("x_start")[:, :n]
-        contact = s.rows("contact_work")
-        return {
-            "kinetic": 0.5 * float(np.sum(mass * np.sum(self._velocity() ** 2, axis=0))),
-            "internal": float(np.sum(mass * s.rows("energy")[0, :n])),
-            "dissipated": float(np.sum(mass * s.rows("dissipated")[0, :n])),
-            "external_work": float(np.sum(mass * (np.array(p.body_force[: s.d]) @ moved))),
-            "contact_energy": -float(np.sum(contact[0, :n])) if len(contact) else 0.0,
-        }
+        return measures.energies(self.problem, self._state, self._velocity())
 
     def _contact_force(self) -> Floats:
         """Force [3] of all other bodies on the first one."""
@@ -440,7 +388,7 @@ class Solver:
             "internal": now["internal"],
             "external_work": now["external_work"],
             "dissipated": now["dissipated"],
-            "balance_error": abs(_total(now) - _total(start)) / scale,
+            "balance_error": abs(measures.total(now) - measures.total(start)) / scale,
         }
 
     # to be continued

@@ -1,0 +1,68 @@
+"""What a state amounts to: the arrays of a frame, and energies."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..materials import PLASTIC_STRAIN
+from .problem import Problem
+from .state import Floats, State
+
+
+def particles(p: Problem, s: State, velocity: Floats) -> dict[str, Floats | NDArray[np.int64]]:
+    """The arrays of a frame, in the order of the deck. velocity: (d, n) at the time of the positions."""
+    n = s.n
+    order = np.argsort(s.id[:n], kind="stable")
+
+    def vectors(rows: Floats) -> Floats:
+        full = np.zeros((n, 3))
+        full[:, : s.d] = rows[:, order].T
+        return full
+
+    stress = np.zeros((n, 6))
+    rows = s.rows("stress")[:, :n]
+    stress[:, : len(rows)] = rows[:, order].T
+    xx, yy, zz, xy, yz, zx = stress.T
+    shear = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3.0 * (xy**2 + yz**2 + zx**2)
+    volume = s.rows("mass")[0, :n] / s.rows("density")[0, :n]
+    radius = {1: 0.5 * volume, 2: np.sqrt(volume / math.pi), 3: np.cbrt(0.75 * volume / math.pi)}[p.dimension]
+    plastic = s.rows("state")[PLASTIC_STRAIN, :n][order] if len(s.rows("state")) else np.zeros(n)
+    numbers = np.array([b.number for b in p.bodies])
+    x = s.rows("x")[:, :n]
+    return {
+        "id": s.id[:n][order],
+        "material": numbers[s.material[:n][order]],
+        "position": vectors(x),
+        "velocity": vectors(velocity),
+        "density": s.rows("density")[0, :n][order],
+        "mass": s.rows("mass")[0, :n][order],
+        "radius": radius[order],
+        "pressure": -(xx + yy + zz) / 3.0,
+        "stress": stress,
+        "von_mises": np.sqrt(shear),
+        "plastic_strain": plastic,
+        "displacement": vectors(x - s.rows("x_start")[:, :n]),
+    }
+
+
+def energies(p: Problem, s: State, velocity: Floats) -> dict[str, float]:
+    """Kinetic, internal (with what was dissipated), dissipated, external work, energy stored in the contact."""
+    n = s.n
+    mass = s.rows("mass")[0, :n]
+    moved = s.rows("x")[:, :n] - s.rows("x_start")[:, :n]
+    contact = s.rows("contact_work")
+    return {
+        "kinetic": 0.5 * float(np.sum(mass * np.sum(velocity**2, axis=0))),
+        "internal": float(np.sum(mass * s.rows("energy")[0, :n])),
+        "dissipated": float(np.sum(mass * s.rows("dissipated")[0, :n])),
+        "external_work": float(np.sum(mass * (np.array(p.body_force[: s.d]) @ moved))),
+        "contact_energy": -float(np.sum(contact[0, :n])) if len(contact) else 0.0,
+    }
+
+
+def total(energies: dict[str, float]) -> float:
+    """What stays constant."""
+    return energies["kinetic"] + energies["internal"] + energies["contact_energy"] - energies["external_work"]
