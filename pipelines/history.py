@@ -73,6 +73,10 @@ class History:
     def finish(self, solver: Solver) -> None:
         """The last row."""
         self.observe(solver)
+        self.close()
+
+    def close(self) -> None:
+        """Close the file, also of a run that was broken off."""
         if self._out is not None:
             self._out.close()
             self._out = None

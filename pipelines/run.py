@@ -14,6 +14,7 @@ from zrno.pipelines import scene as scenes
 from zrno.pipelines.checkpoint import Checkpointer, load_latest
 from zrno.pipelines.convert import make_decks
 from zrno.pipelines.history import History
+from zrno.pipelines.interrupt import held_back
 from zrno.pipelines.manifest import Manifest, digests
 from zrno.pipelines.progress import Progress
 from zrno.pipelines.scene import Scene
@@ -91,18 +92,21 @@ def run(
         status = "failed"
         loop = time.perf_counter()
         try:
-            run_to_end(solver, watchers, end)
+            with held_back() as interrupt:
+                run_to_end(solver, [*watchers, interrupt], end)
             status = "done"
         except KeyboardInterrupt:
             status = "interrupted"
-            checkpointer.save(solver)
-            log.warning("interrupted at t = %g, step %d; --resume goes on from here", solver.time, solver.step)
+            if interrupt.raised:
+                checkpointer.save(solver)
+            log.warning("interrupted at t = %g, step %d; --resume goes on", solver.time, solver.step)
             raise
         except Exception as error:
             log.error("%s", error)
             raise
         finally:
             bar.finish(solver)
+            history.close()
             seconds = time.perf_counter() - loop
             result = {
                 "status": status,

@@ -28,7 +28,7 @@ class Units:
             "density": f"{self.mass}/{self.length}^3",
             "mass": self.mass,
             **dict.fromkeys(("pressure", "stress", "von_mises"), self.stress),
-            **dict.fromkeys(("kinetic", "internal", "dissipated", "external_work"), self.energy),
+            **dict.fromkeys(("kinetic", "internal", "dissipated", "external_work", "contact_energy"), self.energy),
             **{f"momentum_{axis}": momentum for axis in "xyz"},
             **{f"contact_force_{axis}": self.force for axis in "xyz"},
         }
