@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import yaml
@@ -85,14 +85,24 @@ def split(options: Mapping[str, Any]) -> Options:
 
 def apply(settings: Mapping[str, Any], model: Model) -> None:
     """Put settings into a deck that was read. Raises InputError for those that only a mesh can be made with."""
+    known = (*_CONTROL, "xsph", "gravity", "viscosity.quadratic", "viscosity.linear")
+    faults = []
+    for key, value in settings.items():
+        if key not in known:
+            message = f"{key} is for decks that a scene makes from a mesh; this deck is there already"
+            faults.append(Fault("--set", 1, len(key) + 2, message, str(value), ", ".join(known)))
+            continue
+        try:
+            load_settings(None, overrides={key: value})
+        except InputError as error:
+            faults += [replace(fault, path="--set", column=len(key) + 2) for fault in error.faults]
+    if faults:
+        raise InputError(faults)
     values = load_settings(None, overrides=settings)
     control = model.particle_control
     assert control is not None
-    faults = []
-    for key, value in settings.items():
+    for key in settings:
         match key:
-            case _ if key in _CONTROL:
-                setattr(control, _CONTROL[key], values[key])
             case "xsph":
                 control.velocity_option = int(values[key])
             case "gravity":
@@ -102,8 +112,4 @@ def apply(settings: Mapping[str, Any], model: Model) -> None:
                 for material in model.materials.values():
                     setattr(material, name, values["viscosity"][key.partition(".")[2]])
             case _:
-                expected = ", ".join((*_CONTROL, "xsph", "gravity", "viscosity.quadratic", "viscosity.linear"))
-                message = f"{key} is for decks that a scene makes from a mesh; this deck is there already"
-                faults.append(Fault("--set", 1, len(key) + 2, message, str(value), expected))
-    if faults:
-        raise InputError(faults)
+                setattr(control, _CONTROL[key], values[key])

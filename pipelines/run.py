@@ -57,6 +57,8 @@ def run(
     after the checkpoint of an interrupted one.
     """
     chosen = command_options.split(options or {})
+    if until is not None and not until >= 0.0:
+        raise InputError([Fault("--until", 1, 1, "the run cannot end before it starts", str(until), "0 or more")])
     paths = [Path(p) for p in inputs]
     scene, deck = _what_to_run(paths, chosen)
     model = read(deck)
