@@ -50,9 +50,9 @@ def velocity_gradient(
             wz = 0.0
         if h is not None:
             hi = 0.5 * h[i]
-        row = rows[first[i] : first[i] + count[i]]
+        begin = np.uint64(first[i])
         for k in range(np.uint64(count[i])):
-            j = row[k]
+            j = rows[begin + k]
             dx = xi - x[j]
             dy = yi - y[j]
             r2 = dx * dx + dy * dy
@@ -167,9 +167,9 @@ def momentum(
             hi = 0.5 * h[i]
         if nearest is not None:
             least = ALONE
-        row = rows[first[i] : first[i] + count[i]]
+        begin = np.uint64(first[i])
         for k in range(np.uint64(count[i])):
-            j = row[k]
+            j = rows[begin + k]
             dx = xi - x[j]
             dy = yi - y[j]
             r2 = dx * dx + dy * dy

@@ -26,7 +26,7 @@ PROGRESS = 7
 # why `advance` came back
 REACHED, PAUSED, REBUILD, BROKEN, COLLAPSED = range(5)
 
-CHUNK = 128  # particles that a thread takes on at a time
+CHUNK = 256  # particles that a thread takes on at a time
 
 LANDING = 8  # so many steps before a wanted time the step is trimmed to meet it
 GROWTH = 1.1  # a step grows by no more than this
