@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from zrno.pipelines import options as command_options
 from zrno.pipelines import scene as scenes
 from zrno.pipelines.checkpoint import Checkpointer, load_latest
-from zrno.pipelines.convert import make_decks
+from zrno.pipelines.convert import make_decks, report_text
 from zrno.pipelines.history import History
 from zrno.pipelines.interrupt import held_back
 from zrno.pipelines.manifest import Manifest, digests
@@ -60,7 +60,7 @@ def run(
     if until is not None and not until >= 0.0:
         raise InputError([Fault("--until", 1, 1, "the run cannot end before it starts", str(until), "0 or more")])
     paths = [Path(p) for p in inputs]
-    scene, deck = _what_to_run(paths, chosen)
+    scene, deck, made = _what_to_run(paths, chosen)
     model = read(deck)
     if scene is None:
         command_options.apply(chosen.settings, model)
@@ -87,9 +87,15 @@ def run(
             title=(scene.title if scene else "") or model.title,
             units=scene.units if scene else None,
         )
+        for report in made:
+            for line in report_text(report).splitlines():
+                log.info("making %s: %s", deck.name, line)
         for warning in model.warnings:
             log.warning(warning)
+        model.warnings += [f"dropped: {i['count']} {i['what']} - {i['where']}" for m in made for i in m["dropped"]]
         log.info("%s: %d particles, end time %g; built for %s", deck.name, solver.n, end, solver.kernels())
+        if state is not None:
+            log.info("resumed at t = %g, step %d", solver.time, solver.step)
         steps_before = solver.step
         status = "failed"
         loop = time.perf_counter()
@@ -134,20 +140,21 @@ def run(
     return result
 
 
-def _what_to_run(paths: Sequence[Path], chosen: command_options.Options) -> tuple[Scene | None, Path]:
-    """The scene, if one was given, and the particle deck, made if a scene makes it."""
+def _what_to_run(
+    paths: Sequence[Path], chosen: command_options.Options
+) -> tuple[Scene | None, Path, list[dict[str, Any]]]:
+    """The scene, if one was given; the particle deck, made if a scene makes it; what `convert` reports of that."""
     if len(paths) == 1 and paths[0].suffix.lower() in (".yaml", ".yml"):
         scene = scenes.load(paths[0], chosen.scene)
         folder = paths[0].parent
         decks = [folder / deck for deck in scene.decks]
         _only_particles(decks)
-        make_decks(scene, folder)
-        return scene, decks[0]
+        return scene, decks[0], make_decks(scene, folder)
     _only_particles(paths)
     unused = [key for key in chosen.scene if key not in chosen.settings]
     if unused:
         raise InputError([Fault("--set", 1, 1, f"{key} is for scenes", key, "a scene") for key in unused])
-    return None, paths[0]
+    return None, paths[0], []
 
 
 def _only_particles(decks: Sequence[Path]) -> None:

@@ -222,6 +222,36 @@ def test_set_replaces_a_key_of_a_scene(tmp_path: Path) -> None:
     assert set(result.manifest["inputs"]) == {str(scene), str(tmp_path / "impact.mcm")}
 
 
+def test_what_making_a_deck_lost_is_in_the_log_and_among_the_warnings(tmp_path: Path) -> None:
+    (tmp_path / "squares.geo").write_text(
+        'SetFactory("OpenCASCADE"); Rectangle(1) = {0, 0, 0, 1, 1}; Rectangle(2) = {1, 0, 0, 1, 1};\n'
+        'Physical Surface("left") = {1}; Physical Surface("right") = {2}; Physical Curve("bottom") = {1};\n'
+    )
+    scene = tmp_path / "scene.yaml"
+    scene.write_text(
+        "meshes:\n"
+        "  - source: squares.geo\n"
+        "    target: squares.mcm\n"
+        "    spacing: 0.1\n"
+        "    set:\n"
+        "      end_time: 0.1\n"
+        "      step_option: 2\n"
+        "      materials.left: &law {law: von_mises, density: 2.7, E: 0.7, nu: 0.3, yield_stress: 0.003, beta: 0.5,\n"
+        "        tangent_modulus: 0.01}\n"
+        "      materials.right: *law\n"
+        "decks: [squares.mcm]\n"
+    )
+    result = run([scene], output=tmp_path / "out")
+    lost = "line2 elements - of lower dimension than the parts: no particles are made of them"
+    assert [warning for warning in result["warnings"] if lost in warning]
+    log = (tmp_path / "out" / "run.log").read_text()
+    assert "making squares.mcm: 200 particles in 2 part(s)" in log
+    assert log.count(lost) == 1
+    resumed = run([scene], output=tmp_path / "out", resume=True)  # the deck is made again, the same
+    assert (resumed["status"], resumed["steps"]) == ("done", result["steps"])
+    assert f"resumed at t = 0.1, step {result['steps']}" in (tmp_path / "out" / "run.log").read_text()
+
+
 def test_set_of_a_scenes_key_is_wrong_for_a_deck(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"--set:1:1: error: output\.every is for scenes"):
         run([deck(tmp_path / "impact.mcm")], output=tmp_path / "out", options={"output.every": 0.2})
