@@ -75,6 +75,11 @@ def kernel(function: Function) -> Any:
     return numba.njit(cache=True, fastmath=FASTMATH, error_model="numpy", nogil=True)(function)
 
 
+def exact_kernel(function: Function) -> Any:
+    """As `kernel`, with every operation rounded as IEEE 754 says and none exchanged."""
+    return numba.njit(cache=True, error_model="numpy", nogil=True)(function)
+
+
 class _CompileClock(event.Listener):  # type: ignore[misc]  # numba is untyped here (pyproject.toml)
     """Adds up the seconds that the outermost compilations take."""
 

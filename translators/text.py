@@ -16,11 +16,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+Ints = NDArray[np.int64]
+
 MAX_FAULTS = 20
-_CHUNK = 20_000  # cards parsed at a time: the cut-out columns stay in the cache
+_CHUNK = 20_000  # cards looked at together: the cut-out columns stay in the cache
+_FEW = 100_000  # numbers: below this Python parses them before the jitted kernels are loaded
+_LINES_AT_A_TIME = 1 << 23  # bytes searched for line ends
 _REAL = re.compile(r"([+-]?)(\d+\.?\d*|\.\d+)(?:[EeDdQq]([+-]?\d+)|([+-]\d+))?$")
 _INTEGER = re.compile(r"[+-]?\d+$")
-_BLANK = ord(" ")
+_LONGEST_REAL = 1000  # characters: what is longer is no number of a person or a program
+_LONGEST_INTEGER = 19  # characters that are sure to fit 64 bits
+_BLANK, _NEWLINE, _RETURN = b" \n\r"
 
 
 def _table(characters: bytes) -> NDArray[np.bool_]:
@@ -29,13 +35,7 @@ def _table(characters: bytes) -> NDArray[np.bool_]:
     return table
 
 
-_INTEGER_CHARACTERS = _table(b"0123456789+- ")
 _DIGITS_OR_BLANK = _table(b"0123456789 ")
-_SIGN = _table(b"+-")
-_DIGIT_OR_POINT = _table(b"0123456789.")
-_REAL_CHARACTERS = _table(b"0123456789+-.eE ")
-_D_TO_E = np.arange(256, dtype=np.uint8)
-_D_TO_E[[ord("d"), ord("D")]] = ord("E")
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -101,6 +101,22 @@ def read_bytes(path: Path | str) -> bytes:
     return data
 
 
+def line_spans(data: bytes) -> tuple[Ints, Ints]:
+    """First byte of each line and the byte past its last, without its end (a newline, or a carriage return and one)."""
+    whole = np.frombuffer(data, np.uint8)
+    pieces = range(0, len(data), _LINES_AT_A_TIME)
+    ends = np.concatenate(
+        [start + np.flatnonzero(whole[start : start + _LINES_AT_A_TIME] == _NEWLINE) for start in pieces]
+    )
+    starts = np.concatenate(([0], ends + 1))
+    if starts[-1] == len(data):  # the newline that ends the last line begins no further one
+        starts = starts[:-1]
+    else:
+        ends = np.concatenate((ends, [len(data)]))
+    returned = (ends > starts) & (whole[np.maximum(ends - 1, 0)] == _RETURN)
+    return starts, ends - returned
+
+
 def write_atomically(path: Path | str, chunks: Iterable[bytes]) -> None:
     """Write a file under a temporary name in its folder and rename it: it appears whole or not at all."""
     target = Path(path)
@@ -122,7 +138,7 @@ def parse_real(text: str, implied: int = 0) -> float | None:
     text = text.strip()
     if not text:
         return 0.0
-    match = _REAL.match(text)
+    match = _REAL.match(text) if len(text) < _LONGEST_REAL else None
     if match is None:
         return None
     sign, mantissa, exponent, bare_exponent = match.groups()
@@ -171,19 +187,24 @@ class Block:
 
     def __init__(self, cards: Cards, layout: Layout, first: int, count: int) -> None:
         self.layout = layout
-        self.values: dict[str, NDArray[Any]] = {}
         self._cards = cards
         self._first = first
-        self._count = count
-        for f in layout.fields.values():
-            if f.kind != "a":
-                self.values[f.name] = np.zeros(count, np.int64 if f.kind == "i" else np.float64)
-        for start in range(0, count, _CHUNK):
-            stop = min(start + _CHUNK, count)
-            grid = cards.grid(first + start, first + stop, layout.width)
-            for f in layout.fields.values():
-                if f.kind != "a":
-                    self.values[f.name][start:stop] = self._parse(f, grid[:, f.start : f.end], start)
+        numeric = [f for f in layout.fields.values() if f.kind != "a"]
+        if count * len(numeric) < _FEW:
+            self.values = {f.name: self._parse(f, range(count)) for f in numeric}
+            return
+        from zrno.translators import scan
+
+        spans = cards.spans(first, first + count)
+        fields = [(f.start, f.end, -1 if f.kind == "i" else f.implied) for f in numeric]
+        arrays, care = scan.fixed(*spans, fields)
+        self.values = {f.name: array for f, array in zip(numeric, arrays, strict=True)}
+        if care is None:
+            return
+        for f, cared in zip(numeric, care, strict=True):
+            cells = np.flatnonzero(cared)
+            if len(cells):
+                self.values[f.name][cells] = self._parse(f, cells.tolist())
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         return self.values[name]
@@ -209,41 +230,14 @@ class Block:
         for i in np.flatnonzero(~np.atleast_1d(good))[:MAX_FAULTS].tolist():
             self.fault(i, name, message, expected)
 
-    def _parse(self, f: Field, columns: NDArray[np.uint8], start: int) -> NDArray[Any]:
-        """Numbers of one field in a chunk of cards: all at once; card by card only where that cannot be done."""
-        dtype = np.int64 if f.kind == "i" else np.float64
-        if f.kind == "e":
-            columns = _D_TO_E[columns]
-        blank = (columns == _BLANK).all(axis=1)
-        if blank.all():
-            return np.zeros(len(columns), dtype)
-        table = _INTEGER_CHARACTERS if f.kind == "i" else _REAL_CHARACTERS
-        if f.implied == 0 and table[columns].all():
-            if blank.any():
-                columns = columns.copy()
-                columns[blank, 0] = ord("0")
-            # a sign behind a digit or a point is an exponent without its letter (1.5-3), which only Fortran reads
-            sign, before = _SIGN[columns[:, 1:]], _DIGIT_OR_POINT[columns[:, :-1]]
-            fortran = np.flatnonzero((sign & before).any(axis=1))
-            if len(fortran):
-                columns = columns.copy()
-                columns[fortran] = _BLANK
-                columns[fortran, 0] = ord("0")
-            texts = np.ascontiguousarray(columns).view(f"S{f.end - f.start}")[:, 0]
-            try:
-                numbers = texts.astype(dtype)
-            except (ValueError, OverflowError):
-                pass
-            else:
-                if np.isfinite(numbers).all():
-                    numbers[fortran] = [self._parse_one(f, start + i) for i in fortran.tolist()]
-                    return numbers
-        return np.array([self._parse_one(f, start + i) for i in range(len(columns))], dtype)
+    def _parse(self, f: Field, cards: Iterable[int]) -> NDArray[Any]:
+        """Numbers of one field of some cards, one by one."""
+        return np.array([self._parse_one(f, i) for i in cards], np.int64 if f.kind == "i" else np.float64)
 
     def _parse_one(self, f: Field, i: int) -> float:
         text = self.text(f.name, i)
         if f.kind == "i":
-            if _INTEGER.match(text):
+            if _INTEGER.match(text) and len(text) < _LONGEST_INTEGER:
                 return int(text)
             if text:
                 self.fault(i, f.name, f"{f.name} is not an integer", f"digits in columns {f.start + 1}-{f.end}")
@@ -292,16 +286,12 @@ class Cards:
         self.faults = Faults(str(path))
         self._data = data
         self._bytes = np.frombuffer(data, np.uint8)
-        ends = np.flatnonzero(self._bytes == ord("\n"))
-        starts = np.concatenate(([0], ends + 1))
-        ends = np.concatenate((ends, [len(data)]))
-        if starts[-1] == len(data):  # the newline that ends the last line begins no further one
-            starts, ends = starts[:-1], ends[:-1]
+        starts, ends = line_spans(data)
         self._lines = len(starts)
-        keep = np.flatnonzero(~_table(comments)[self._bytes[np.minimum(starts, len(data) - 1)]] | (starts == ends))
-        carriage_return = (ends > starts) & (self._bytes[np.maximum(ends - 1, 0)] == ord("\r"))
+        first = self._bytes[np.minimum(starts, len(data) - 1)]
+        keep = np.flatnonzero(~_table(comments)[first] | (starts == ends))
         self._starts = starts[keep]
-        self._ends = (ends - carriage_return)[keep]
+        self._ends = ends[keep]
         self._numbers = keep + 1
         self._next = 0
 
@@ -323,11 +313,15 @@ class Cards:
         """A card's line."""
         return self._data[self._starts[card] : self._ends[card]].decode("latin-1")
 
+    def spans(self, first: int, last: int) -> tuple[NDArray[np.uint8], Ints, Ints]:
+        """All bytes of the file, and where the cards first..last (excluded) start and end in them."""
+        return self._bytes, self._starts[first:last], self._ends[first:last]
+
     def grid(self, first: int, last: int, width: int) -> NDArray[np.uint8]:
         """Bytes of the cards first..last (excluded), shape (n, width): cut, and filled with blanks."""
         starts, lengths = self._starts[first:last], (self._ends - self._starts)[first:last]
         columns = np.arange(width)
-        grid = self._bytes[np.minimum(starts[:, None] + columns, len(self._bytes) - 1)]
+        grid: NDArray[np.uint8] = self._bytes[np.minimum(starts[:, None] + columns, len(self._bytes) - 1)]
         if len(lengths) and lengths.min() < width:
             grid[columns >= lengths[:, None]] = _BLANK
         return grid

@@ -1,0 +1,284 @@
+"""Numbers out of the bytes of large text blocks, exactly: the nearest double, as Python's float gives it.
+
+Jitted, and imported only where a block is large enough to pay for it; small blocks and odd cells go through
+`text.parse_real`. What a kernel cannot settle (text that is no number, more than 19 digits, numbers near the ends of
+the range of doubles) it marks in `care` and leaves to its caller.
+
+Decimals become doubles by the method of Lemire, "Number parsing at a gigabyte per second" (2021): the decimal
+significand times a 128-bit power of five, rounded to even.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+# numba fixes what it compiles for at its first compilation: the settings of the solvers' kernels must rule that too
+from zrno.solvers.jit import exact_kernel
+
+_U = np.uint64
+_LEAST_POWER, _MOST_POWER = -342, 308
+_BLANK, _COMMA, _PLUS, _MINUS, _POINT, _ZERO = (np.uint8(ord(c)) for c in " ,+-.0")
+_TAB = np.uint8(9)
+
+
+def _powers_of_five() -> NDArray[np.uint64]:
+    """The leading 128 bits of 5^q, shape (651, 2): high and low words; reciprocals are rounded up."""
+    rows = []
+    for q in range(_LEAST_POWER, _MOST_POWER + 1):
+        if q < 0:
+            power = 5**-q
+            z = (power - 1).bit_length()
+            value = 2 ** (z + 127 if q >= -27 else 2 * z + 128) // power + 1
+        else:
+            value = 5**q
+        shift = value.bit_length() - 128
+        value = value >> shift if shift > 0 else value << -shift
+        rows.append((value >> 64, value & (2**64 - 1)))
+    return np.array(rows, np.uint64)
+
+
+_FIVES = _powers_of_five()
+_TENS = 10.0 ** np.arange(23)  # exact doubles
+
+
+@exact_kernel
+def _high_low(a, b):
+    """The 128-bit product of two words: high, low."""
+    mask, half = _U(0xFFFFFFFF), _U(32)
+    a1, a0, b1, b0 = a >> half, a & mask, b >> half, b & mask
+    low, first, second = a0 * b0, a1 * b0, a0 * b1
+    middle = (low >> half) + (first & mask) + (second & mask)
+    high = a1 * b1 + (first >> half) + (second >> half) + (middle >> half)
+    return high, a * b
+
+
+@exact_kernel
+def _leading_zeros(w):
+    count = _U(0)
+    for step in (32, 16, 8, 4, 2, 1):
+        if w >> _U(64 - step) == _U(0):
+            count += _U(step)
+            w = w << _U(step)
+    return count
+
+
+@exact_kernel
+def _double_bits(w, q):
+    """Bits of the double nearest to w * 10^q (w > 0), and whether they could be found."""
+    if q < _LEAST_POWER or q > _MOST_POWER:
+        return _U(0), False
+    lz = _leading_zeros(w)
+    w = w << lz
+    high, low = _high_low(w, _FIVES[q - _LEAST_POWER, 0])
+    if high & _U(0x1FF) == _U(0x1FF):
+        more, _ = _high_low(w, _FIVES[q - _LEAST_POWER, 1])
+        low = low + more
+        if more > low:
+            high = high + _U(1)
+    if low == _U(0xFFFFFFFFFFFFFFFF) and (q < -27 or q > 55):
+        return _U(0), False
+    top = high >> _U(63)
+    shift = top + _U(9)
+    mantissa = high >> shift
+    exponent = ((217706 * q) >> 16) + 63 + np.int64(top) - np.int64(lz) + 1023
+    if exponent <= 0 or exponent >= 2046:
+        return _U(0), False
+    if low <= _U(1) and q >= -4 and q <= 23 and mantissa & _U(3) == _U(1) and mantissa << shift == high:
+        mantissa = mantissa & ~_U(1)  # halfway between two doubles: to the even one
+    mantissa = (mantissa + (mantissa & _U(1))) >> _U(1)
+    if mantissa >= _U(1) << _U(53):
+        mantissa = _U(1) << _U(52)
+        exponent += 1
+    return (mantissa & ~(_U(1) << _U(52))) | (_U(exponent) << _U(52)), True
+
+
+@exact_kernel
+def _real(data, a, b, implied, reals, bits, i):
+    """Parse data[a:b], trimmed and not empty, as a Fortran real into place i; False where it takes care."""
+    negative = data[a] == _MINUS
+    if negative or data[a] == _PLUS:
+        a += 1
+    w, digits, seen, scale, point = _U(0), 0, 0, 0, False
+    while a < b:
+        c = data[a]
+        d = np.uint8(c - _ZERO)
+        if d < 10:
+            seen += 1
+            if digits > 0 or d > 0:
+                digits += 1
+                if digits > 19:
+                    return False
+                w = w * _U(10) + _U(d)
+            scale -= point
+        elif c == _POINT and not point:
+            point = True
+        else:
+            break
+        a += 1
+    if seen == 0:
+        return False
+    if not point:
+        scale -= implied
+    if a < b:
+        c = data[a] | np.uint8(32)
+        if c == np.uint8(101) or c == np.uint8(100) or c == np.uint8(113):  # e, d, q
+            a += 1
+        elif data[a] != _PLUS and data[a] != _MINUS:
+            return False
+        if a >= b:
+            return False
+        down = data[a] == _MINUS
+        if down or data[a] == _PLUS:
+            a += 1
+        if a >= b or b - a > 4:
+            return False
+        power = 0
+        while a < b:
+            d = np.uint8(data[a] - _ZERO)
+            if d > 9:
+                return False
+            power = power * 10 + d
+            a += 1
+        scale += -power if down else power
+    if w == _U(0):
+        reals[i] = 0.0
+    elif w <= _U(9007199254740992) and -22 <= scale <= 22:  # two exact doubles: one rounding
+        value = np.float64(np.int64(w))
+        reals[i] = value * _TENS[scale] if scale >= 0 else value / _TENS[-scale]
+    else:
+        word, found = _double_bits(w, scale)
+        if not found:
+            return False
+        bits[i] = word
+    bits[i] |= _U(negative) << _U(63)
+    return True
+
+
+@exact_kernel
+def _integer(data, a, b):
+    """data[a:b], trimmed and not empty, as an integer, and whether it is one of at most 18 digits."""
+    negative = data[a] == _MINUS
+    if negative or data[a] == _PLUS:
+        a += 1
+    if a >= b or b - a > 18:
+        return 0, False
+    value = 0
+    while a < b:
+        d = np.uint8(data[a] - _ZERO)
+        if d > 9:
+            return 0, False
+        value = value * 10 + np.int64(d)
+        a += 1
+    return (-value if negative else value), True
+
+
+@exact_kernel
+def _fixed(data, starts, ends, columns, ints, reals, bits, care):
+    cared = 0
+    for i in range(len(starts)):
+        for f in range(len(columns)):
+            a = starts[i] + columns[f, 0]
+            b = min(starts[i] + columns[f, 1], ends[i])
+            while a < b and data[a] == _BLANK:
+                a += 1
+            while a < b and data[b - 1] == _BLANK:
+                b -= 1
+            slot = columns[f, 3]
+            if a >= b:
+                if columns[f, 2] < 0:
+                    ints[slot, i] = 0
+                else:
+                    reals[slot, i] = 0.0
+            elif columns[f, 2] < 0:
+                value, good = _integer(data, a, b)
+                ints[slot, i] = value
+                if not good:
+                    care[f, i] = True
+                    cared += 1
+            elif not _real(data, a, b, columns[f, 2], reals[slot], bits[slot], i):
+                reals[slot, i] = 0.0
+                care[f, i] = True
+                cared += 1
+    return cared
+
+
+@exact_kernel
+def _free(data, starts, ends, only_commas, values, bits, counts, care):
+    cared, limit = 0, values.shape[1]
+    for i in range(len(starts)):
+        a, end, count = starts[i], ends[i], 0
+        while True:
+            while a < end and (data[a] == _BLANK or data[a] == _TAB):
+                a += 1
+            if a >= end:
+                break
+            b = a
+            while b < end and data[b] != _COMMA and (only_commas or (data[b] != _BLANK and data[b] != _TAB)):
+                b += 1
+            last = b
+            while last > a and (data[last - 1] == _BLANK or data[last - 1] == _TAB):
+                last -= 1
+            if count < limit:
+                if last == a:
+                    values[i, count] = 0.0
+                elif not _real(data, a, last, 0, values[i], bits[i], count):
+                    values[i, count] = np.nan
+                    care[i] = True
+                    cared += 1
+            count += 1
+            a = b
+            while a < end and (data[a] == _BLANK or data[a] == _TAB):
+                a += 1
+            if a < end and data[a] == _COMMA:
+                a += 1
+        counts[i] = count
+        for k in range(count, limit):
+            values[i, k] = 0.0
+    return cared
+
+
+def fixed(
+    data: NDArray[np.uint8], starts: NDArray[np.int64], ends: NDArray[np.int64], fields: list[tuple[int, int, int]]
+) -> tuple[list[NDArray[Any]], NDArray[np.bool_] | None]:
+    """Fields of fixed columns of many lines.
+
+    starts, ends: (n,) first byte of each line and the byte past its last; fields: first column (from 0), column past
+    the last, and the decimals that the format implies, or -1 for an integer. A blank field is 0. Returns an array (n,)
+    a field (int64 or float64), and the cells that take care: (fields, n), or None.
+    """
+    n = len(starts)
+    slots = [0, 0]
+    columns = np.empty((len(fields), 4), np.int64)
+    for row, (first, last, implied) in zip(columns, fields, strict=True):
+        row[:] = first, last, implied, slots[implied >= 0]
+        slots[implied >= 0] += 1
+    ints, reals = np.empty((slots[0], n), np.int64), np.empty((slots[1], n))
+    care = np.zeros((len(fields), n), np.bool_)
+    cared = _fixed(data, starts, ends, columns, ints, reals, reals.view(np.uint64), care)
+    values = [(ints if row[2] < 0 else reals)[row[3]] for row in columns]
+    return values, care if cared else None
+
+
+def free(
+    data: NDArray[np.uint8],
+    starts: NDArray[np.int64],
+    ends: NDArray[np.int64],
+    width: int,
+    *,
+    only_commas: bool = False,
+) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.bool_] | None]:
+    """Numbers of many lines, separated by commas, blanks or both.
+
+    only_commas: blanks do not separate. An empty field is 0. Returns the first `width` numbers of each line,
+    (n, width), filled with 0 where a line has fewer; how many fields each line has (n,) (a last comma ends the last
+    field); and the lines with text that takes care, where the value is NaN: (n,), or None.
+    """
+    n = len(starts)
+    values = np.empty((n, width))
+    counts = np.empty(n, np.int64)
+    care = np.zeros(n, np.bool_)
+    cared = _free(data, starts, ends, only_commas, values, values.view(np.uint64), counts, care)
+    return values, counts, care if cared else None
