@@ -6,14 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-import yaml
-
-from zrno.pipelines.marked import did_you_mean, parse_value
 from zrno.pipelines.scene import OF_EVERY_MESH, Scene
 from zrno.translators.model import Model
 from zrno.translators.settings import TABLE
 from zrno.translators.settings import load as load_settings
 from zrno.translators.text import Fault, InputError
+from zrno.translators.yaml_marks import did_you_mean, parse_value
 
 RUN = {"compat": ("original",)}
 SETTINGS = tuple(item.key for item in TABLE)
@@ -47,7 +45,7 @@ def parse(pairs: Sequence[str]) -> dict[str, Any]:
         key, equals, text = pair.partition("=")
         try:
             options[key.strip()] = parse_value(text)
-        except yaml.YAMLError:
+        except ValueError:
             faults.append(Fault("--set", 1, len(key) + 2, f"the value of {key} is not YAML", text, "KEY=VALUE"))
         if not equals or not key.strip():
             faults.append(Fault("--set", 1, 1, "not a key and its value", pair, "KEY=VALUE"))
