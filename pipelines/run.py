@@ -22,6 +22,7 @@ from zrno.pipelines.series import ResultSeries
 from zrno.translators import read
 from zrno.translators.model import Model
 from zrno.translators.text import Fault, InputError
+from zrno.translators.yaml_marks import Place
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -62,15 +63,14 @@ def run(
     paths = [Path(p) for p in inputs]
     scene, deck, made = _what_to_run(paths, chosen)
     model = read(deck)
-    if scene is None:
-        command_options.apply(chosen.settings, model)
+    places = {} if scene else command_options.apply(chosen.settings, model)
     directory = Path(output) if output is not None else Path(f"{paths[0].stem}_results")
 
     started = time.perf_counter()
     from zrno.solvers.jit import compile_seconds
     from zrno.solvers.time import run as run_to_end
 
-    solver, state = _solver(model, deck, directory, chosen.run, threads, resume)
+    solver, state = _solver(model, deck, places, directory, chosen.run, threads, resume)
     end = model.particle_control.end_time if model.particle_control else 0.0
     end = end if until is None else min(end, until)
 
@@ -167,13 +167,19 @@ def _only_particles(decks: Sequence[Path]) -> None:
 
 
 def _solver(
-    model: Model, deck: Path, directory: Path, run_options: Mapping[str, Any], threads: int | None, resume: bool
+    model: Model,
+    deck: Path,
+    places: Mapping[str, Place],
+    directory: Path,
+    run_options: Mapping[str, Any],
+    threads: int | None,
+    resume: bool,
 ) -> tuple[Solver, Mapping[str, Any] | None]:
     """The solver at its start or where the newest checkpoint left it; and that checkpoint."""
     from zrno.pipelines.build import particle_problem
     from zrno.solvers.sph import Solver
 
-    problem = particle_problem(model, str(deck), original=run_options.get("compat") == "original")
+    problem = particle_problem(model, str(deck), places=places, original=run_options.get("compat") == "original")
     state = load_latest(directory, inputs=digests([deck])) if resume else None
     solver = Solver(problem, threads=threads)
     if state is not None:
@@ -209,6 +215,7 @@ def _all_options(
     from dataclasses import asdict
 
     control = asdict(model.particle_control) if model.particle_control else {}
+    control.pop("places", None)
     return {
         "scene": scene.model_dump() if scene else None,
         "control": control,

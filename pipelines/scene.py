@@ -217,7 +217,7 @@ def load(path: Path | str, options: Mapping[str, Any] | None = None) -> Scene:
         document.fault((), "a scene is a mapping of keys", "title, decks, ...")
         document.stop()
     for key, value in (options or {}).items():
-        at, place = Place("--set", 1, 1, key), Place("--set", 1, len(key) + 2, str(value))
+        at, place = option_places(key, value)
         targets = _targets(document.data, key)
         if not targets:
             message, expected = (
@@ -239,6 +239,11 @@ def load(path: Path | str, options: Mapping[str, Any] | None = None) -> Scene:
     _check_settings(document, scene, Path(path).parent)
     document.stop()
     return scene
+
+
+def option_places(key: str, value: Any) -> tuple[Place, Place]:
+    """Where the key and the value of a `--set` stand."""
+    return Place("--set", 1, 1, key), Place("--set", 1, len(key) + 2, str(value))
 
 
 def _targets(data: dict[str, Any], key: str) -> list[Location]:

@@ -166,7 +166,7 @@ def test_a_missing_file_and_a_folder(folder: Path, refused: Callable[..., str]) 
         (["--set", "end_time"], "--set:1:1: error: not a key and its value"),
         (["--set", "compat=new"], "--set:1:8: error: compat has a wrong value (new)"),
         (["--set", "output.every=1"], "--set:1:1: error: output.every is for scenes"),
-        (["--set", "h_option=1"], "error: a smoothing length that changes is not computed yet"),
+        (["--set", "h_option=1"], "--set:1:10: error: a smoothing length that changes is not computed yet"),
         (["--set", "end_time=soon"], "--set:1:10: error: end_time is not what it should be (soon)"),
         (["--set", "materials.steel.E=5"], "--set:1:19: error: materials.steel.E is for decks that a scene makes"),
         (["--until", "-1"], "--until:1:1: error: the run cannot end before it starts (-1.0)"),
