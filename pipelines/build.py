@@ -98,7 +98,7 @@ def _law(material: Material) -> Law:
             return Elastic.from_engineering(p["E"], p["nu"])
         case "von_mises":
             if "failure_strain" in p:
-                raise Unsupported("failure by plastic strain is not computed yet; switch it off in the deck")
+                raise Unsupported("failure by plastic strain is not computed yet")
             return von_mises(p["E"], p["nu"], p["yield_stress"], p.get("tangent_modulus", 0.0), p.get("beta", 0.0))
     raise Unsupported(f"the law {material.law} is not computed yet; elastic and von_mises are")
 
