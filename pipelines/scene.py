@@ -21,14 +21,16 @@ from pydantic import (
 from pydantic_core import ErrorDetails, PydanticCustomError
 
 from zrno.pipelines.units import SYSTEMS, Units
-from zrno.pipelines.view import VIEWS
+from zrno.pipelines.view import LEAST_PIXELS, MOST_PIXELS, VIEWS
 from zrno.translators import settings as analysis
 from zrno.translators import yaml_marks
 from zrno.translators.text import Fault, Faults, InputError
 from zrno.translators.yaml_marks import Location, Marked, Place, did_you_mean, dotted
 
+SUFFIXES = (".yaml", ".yml")
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Pixels = Annotated[int, Field(ge=LEAST_PIXELS, le=MOST_PIXELS)]
 
 
 def _as_list(value: Any) -> Any:
@@ -109,7 +111,7 @@ class Picture(Section):
     field: str = "von_mises"
     time: float | str = "last"
     view: str = "iso"
-    size: tuple[Annotated[int, Field(gt=0)], Annotated[int, Field(gt=0)]] = (1280, 720)
+    size: tuple[Pixels, Pixels] = (1280, 720)
 
     @field_validator("time")
     @classmethod
@@ -217,7 +219,7 @@ def load(path: Path | str, options: Mapping[str, Any] | None = None) -> Scene:
         document.fault((), "a scene is a mapping of keys", "title, decks, ...")
         document.stop()
     for key, value in (options or {}).items():
-        at, place = Place("--set", 1, 1, key), Place("--set", 1, len(key) + 2, str(value))
+        at, place = option_places(key, value)
         targets = _targets(document.data, key)
         if not targets:
             message, expected = (
@@ -239,6 +241,11 @@ def load(path: Path | str, options: Mapping[str, Any] | None = None) -> Scene:
     _check_settings(document, scene, Path(path).parent)
     document.stop()
     return scene
+
+
+def option_places(key: str, value: Any) -> tuple[Place, Place]:
+    """Where the key and the value of a `--set` stand."""
+    return Place("--set", 1, 1, key), Place("--set", 1, len(key) + 2, str(value))
 
 
 def _targets(data: dict[str, Any], key: str) -> list[Location]:
@@ -306,6 +313,11 @@ def _check_files(document: Marked, scene: Scene, folder: Path) -> None:
     named += [(("decks", i), deck) for i, deck in enumerate(scene.decks) if deck not in made]
     if scene.study is not None and scene.study.reference is not None:
         named.append((("study", "reference"), scene.study.reference))
+    for i, mesh in enumerate(scene.meshes):
+        target = folder / mesh.target
+        if target.is_dir() or not target.parent.is_dir():
+            message = "a folder" if target.is_dir() else "in a folder that there is not"
+            document.fault(("meshes", i, "target"), f"meshes.{i}.target: {message}", "the name of a file to make")
     for location, name in named:
         if not (folder / name).is_file():
             expected = "a file beside the scene" + (", or a target of meshes" if location[0] == "decks" else "")

@@ -200,9 +200,9 @@ class Settings:
         """Whether a key was set."""
         return key in self.document.keys
 
-    def place(self, *key: str) -> Place:
-        """Where a key was set, or the nearest above it."""
-        return self.document.place(key, key=True)
+    def place(self, *key: str, value: bool = False) -> Place:
+        """Where a key or its value was set, or the nearest above it."""
+        return self.document.place(key, key=not value)
 
     def fault(self, key: Location, message: str, text: object, expected: str) -> None:
         """Note a fault at a key or the nearest above it."""

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from zrno.pipelines import options, scene
-from zrno.pipelines.convert import make_decks
 from zrno.translators import InputError, read, yaml_marks
 from zrno.translators.model import Material, Model, ParticleControl
 
@@ -199,7 +198,7 @@ def test_faults_of_settings_that_are_nowhere_stand_at_the_mesh(tmp_path: Path) -
     ]
 
 
-def test_settings_in_place_are_stronger_than_the_file(tmp_path: Path) -> None:
+def test_settings_in_place_are_stronger_than_the_file(tmp_path: Path, make_decks: Any) -> None:
     text = GOOD.replace("spacing: 0.25", "spacing: 0.25, set: {materials: {plate: {E: 20}}, end_time: 5}")
     loaded = scene.load(_scene(tmp_path, text))
     assert loaded.meshes[0].set == {"materials.plate.E": 20, "end_time": 5}
@@ -210,7 +209,7 @@ def test_settings_in_place_are_stronger_than_the_file(tmp_path: Path) -> None:
     assert deck.particle_control.end_time == 5
 
 
-def test_options_go_where_they_belong(tmp_path: Path) -> None:
+def test_options_go_where_they_belong(tmp_path: Path, make_decks: Any) -> None:
     given = options.parse(
         [
             "compat=original",

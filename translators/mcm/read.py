@@ -108,6 +108,7 @@ class _Deck:
         if self.version == 2:
             self._card_7()
         first, time, history, options = card["first"], card["time"], card["history"], card["options"]
+        interpolation = card["interpolation"]
         self._check_control(first, time, history, options, card["h_opt"])
         c = self.control
         c.dimension = first["axopt"]
@@ -116,13 +117,19 @@ class _Deck:
         c.output_interval, c.state_option = history["stpltime"], history["state_opt"]
         c.history_interval = history["thpltime"]
         c.contact, c.step_option, c.velocity_option = options["contact"], options["tcrit"], options["veloc_opt"]
-        c.h_option, c.max_neighbours = card["h_opt"]["h_opt"], card["interpolation"]["maxnbr"]
+        c.h_option, c.max_neighbours = card["h_opt"]["h_opt"], interpolation["maxnbr"]
         if self.version == 2:
             c.max_particles = first["max_np"] if first["max_np"] > first["np"] else 0
             c.dynamic_relaxation = time["drelax"]
             c.status_interval, c.restart_interval = history["status"], history["restart"]
             c.run_restart = history["run_restart"]
             c.keep_files = card["keep"]["keep_files"]
+        where_asked = {
+            "discretisation": (first, "disctype"), "h_option": (card["h_opt"], "h_opt"),
+            "kernel": (interpolation, "kernel"), "velocity_option": (options, "veloc_opt"),
+            "planes": (options, "symmetry"), "dynamic_relaxation": (time, "drelax"),
+        }  # fmt: skip
+        c.places |= {field: at.place(name) for field, (at, name) in where_asked.items() if name in at.block.values}
         return card
 
     def _check_control(self, first: Card, time: Card, history: Card, options: Card, h_opt: Card) -> None:
@@ -156,6 +163,7 @@ class _Deck:
             c.dialect = "2019-08"
             friction = self.cards.card(layouts.FRICTION, "control card 7")
             c.friction = (friction["static_friction"], friction["dynamic_friction"])
+            c.places["friction"] = friction.place("static_friction")
             return
         options = self.cards.card(layouts.CARD_7_OPTIONS, "control card 7")
         self.control_cards.append(options)
@@ -165,6 +173,7 @@ class _Deck:
         for name in ("birth_death", "plane_particle"):
             options.check(name, options[name] == 0, f"{name} is not supported", "0")
         kind = options["contact_option"]
+        c.places |= dict.fromkeys(("friction", "fluid_friction"), options.place("contact_option"))
         options.check(
             "contact_option", kind in (0, 1, 2), "no such contact option", "0, 1 (friction) or 2 (fluid friction)"
         )
