@@ -91,12 +91,19 @@ def report_text(result: Mapping[str, Any]) -> str:
 
 def _read(path: Path, numbers: Mapping[str, float] | None) -> Model:
     if not numbers:
-        return read(path)
+        model = read(path, paired=True)
+        return model if half_of_a_pair(model) else read(path)
     if path.suffix.lower() != ".geo":
         raise ValueError(f"{path}: numbers are parameters of a .geo script")
     from zrno.translators.gmsh.geo import read as read_geo
 
     return read_geo(path, numbers=numbers)
+
+
+def half_of_a_pair(model: Model) -> bool:
+    """Whether a particle deck is sound as half of a coupled pair alone: its last material owns no particle."""
+    owners = model.particles
+    return owners is None or not model.materials or not (owners.material == max(model.materials)).any()
 
 
 def _write(model: Model, target: Path, options: dict[str, Any], strict: Report | None) -> Report:

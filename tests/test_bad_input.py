@@ -290,7 +290,7 @@ def test_a_refused_conversion_writes_nothing(
     ("name", "message"),
     [
         ("kupa1.mcm", ":869:5: error: velocity card past the last particle 802 (2700)"),
-        ("kipkupa.mcm", ":31:10: error: material model 4, generalised cap, is not supported"),
+        ("kipkupa.mcm", ":41:1: error: material 2 owns no particle"),
     ],
 )
 def test_decks_of_the_original_program_that_are_not_for_a_run_alone(
