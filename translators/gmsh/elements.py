@@ -15,10 +15,9 @@ from zrno.translators.elements import BY_GMSH, Element
 from zrno.translators.gmsh.mesh import NO_GROUP, Mesh, Run
 from zrno.translators.gmsh.numbers import LARGEST_INT, Numbers
 from zrno.translators.model import Ints
+from zrno.translators.streams import row_starts
 
 _PYRAMID14 = 14
-_LONG_RUN = 16  # rows alike from which on it pays to look for their end by doubling
-_STRIDE = 1 << 16  # numbers walked through at a time where rows differ
 
 
 def elements_2(mesh: Mesh, numbers: Numbers, count: int) -> None:
@@ -127,59 +126,25 @@ def give_groups(mesh: Mesh) -> None:
 def _starts(numbers: Numbers, values: NDArray[Any], count: int) -> Ints:
     """Where the rows, as bytes the blocks, begin, until there are `count` elements; goes on behind the last."""
     binary = numbers.binary
-    head = slice(0, 3) if binary else slice(1, 3)
-    pieces: list[Ints] = []
-    at, done = 0, 0
-    while done < count:
-        if at + 3 > len(values):
-            _end(numbers, count - done)
-        kind, tags = int(values[at + head.start]), int(values[at + 2])
-        size = int(values[at + 1]) if binary else 1
-        width = _width(numbers, at, kind, tags, size, len(values))
-        alike = min(-(-(count - done) // size), (len(values) - at) // width)
-        alike = _equal_rows(values[at : at + alike * width].reshape(alike, width)[:, head])
-        if alike < _LONG_RUN and (walked := _walk(numbers, values, at, count - done)):
-            pieces.append(np.array(walked[0], np.int64))
-            at, done = walked[1], done + walked[2]
-        else:
-            pieces.append(at + width * np.arange(alike))
-            at, done = at + alike * width, done + alike * size
-    numbers.skip(at)
-    return np.concatenate(pieces) if pieces else np.zeros(0, np.int64)
 
+    def measure(at: int, head: list[int]) -> tuple[int, int]:
+        if len(head) < 3:
+            numbers.fail("$Elements ends too early", f"{count} elements", len(values))
+        kind = head[0] if binary else head[1]
+        tags, size = head[2], head[1] if binary else 1
+        if kind not in BY_GMSH:
+            _element(kind, numbers, at + (not binary))
+        row = tags + BY_GMSH[kind].nodes
+        width = 3 + size * (1 + row) if binary else 3 + row
+        if tags < 0 or size < 1:
+            numbers.fail("a count below its least", "tags: 0 or more, elements of a block: 1 or more", at + 2)
+        if at + width > len(values):
+            numbers.fail("$Elements ends too early", f"{count} elements", len(values))
+        return width, size
 
-def _walk(numbers: Numbers, values: NDArray[Any], at: int, count: int) -> tuple[list[int], int, int] | None:
-    """Steps through rows that differ: their starts, where they end and how many elements; None when one is too long."""
-    piece = values[at : at + _STRIDE].tolist()
-    binary = numbers.binary
-    starts: list[int] = []
-    i, done = 0, 0
-    while done < count and i + 3 <= len(piece):
-        size = piece[i + 1] if binary else 1
-        width = _width(numbers, at + i, piece[i] if binary else piece[i + 1], piece[i + 2], size, len(values))
-        if i + width > len(piece):
-            break
-        starts.append(at + i)
-        i += width
-        done += size
-    return (starts, at + i, done) if starts else None
-
-
-def _width(numbers: Numbers, at: int, kind: int, tags: int, size: int, end: int) -> int:
-    """Numbers of a row, or of a block with its heading; faults where it is impossible."""
-    if kind not in BY_GMSH:
-        _element(kind, numbers, at + (not numbers.binary))
-    row = (1 if numbers.binary else 3) + tags + BY_GMSH[kind].nodes
-    width = 3 + size * row if numbers.binary else row
-    if tags < 0 or size < 1:
-        numbers.fail("a count below its least", "tags: 0 or more, elements of a block: 1 or more", at + 2)
-    if at + width > end:
-        _end(numbers, 1)
-    return width
-
-
-def _end(numbers: Numbers, elements: int) -> None:
-    numbers.fail("$Elements ends too early", f"{elements} more elements", numbers.left)
+    starts, end = row_starts(values, count, slice(0, 3) if binary else slice(1, 3), measure)
+    numbers.skip(end)
+    return starts
 
 
 def _node_counts(kinds: Ints) -> Ints:
@@ -187,18 +152,6 @@ def _node_counts(kinds: Ints) -> Ints:
     for number, element in BY_GMSH.items():
         table[number] = element.nodes
     return table[kinds]
-
-
-def _equal_rows(rows: NDArray[Any]) -> int:
-    """How many rows begin `rows` that equal the first."""
-    size = min(1, len(rows))
-    while size < len(rows):
-        until = min(2 * size, len(rows))
-        same = (rows[size:until] == rows[0]).all(axis=1)
-        if not same.all():
-            return size + int(np.argmin(same))
-        size = until
-    return size
 
 
 def _element(kind: int, numbers: Numbers, offset: int) -> Element:
