@@ -22,12 +22,14 @@ from zrno.translators.text import MAX_FAULTS, Faults, read_bytes
 
 _GROUP = re.compile(r"GROUP:\s*(\d{1,9})\s*ELEMENTS:\s*(\d{1,18})\s*MATERIAL:\s*(\S+)\s*NFLAGS:\s*(\d{1,9})", re.I)
 _NAME_WIDTH = 32
+_EXACT = 2**53  # doubles hold every whole number up to here
+_ONCE = ("CONTROL INFO", "NODAL COORDINATES", "ELEMENTS/CELLS")
 
 
 @dataclass(slots=True)
 class _Mesh:
-    """What is read so far. counts: the six of the heading; ids, kind, row: of all elements in the file's order, the kind
-    (place in `blocks`) and the row there."""
+    """What is read so far. counts: the six of the heading; ids, kind, row: of all elements in the file's order, the
+    kind (place in `blocks`) and the row there; by_id: the order that sorts ids."""
 
     counts: list[int] = field(default_factory=list)
     tags: Ints = field(default_factory=lambda: np.empty(0, np.int64))
@@ -36,6 +38,7 @@ class _Mesh:
     ids: Ints = field(default_factory=lambda: np.empty(0, np.int64))
     kind: Ints = field(default_factory=lambda: np.empty(0, np.int64))
     row: Ints = field(default_factory=lambda: np.empty(0, np.int64))
+    by_id: Ints = field(default_factory=lambda: np.empty(0, np.int64))
     groups: list[tuple[Part, Ints, Section]] = field(default_factory=list)
     conditions: list[tuple[str, int, Ints, Section]] = field(default_factory=list)  # name, type, numbers
 
@@ -47,9 +50,12 @@ def read(path: Path | str) -> Model:
     model = Model(title=Path(path).stem, format="gambit")
     mesh = _Mesh()
     skipped: dict[str, int] = {}
+    done: set[str] = set()
     for section in sections(data, faults):
         name = section.name
-        if name == "CONTROL INFO":
+        if name in _ONCE and name in done:
+            section.fail(0, f"{name} stands twice", expected="one section of this name")
+        elif name == "CONTROL INFO":
             _control(section, mesh, model)
         elif name and not mesh.counts:
             section.fail(0, "CONTROL INFO does not stand first", expected="CONTROL INFO")
@@ -63,6 +69,7 @@ def read(path: Path | str) -> Model:
             _condition(section, mesh, model)
         elif name:
             skipped[name] = skipped.get(name, 0) + 1
+        done.add(name)
     if not len(mesh.tags):
         faults.add(1 + data.count(b"\n"), 1, "a mesh without nodes", expected="NODAL COORDINATES")
         faults.stop()
@@ -88,10 +95,10 @@ def _nodes(section: Section, mesh: _Mesh) -> None:
     """Number and coordinates of each node."""
     count, directions = mesh.counts[0], mesh.counts[4]
     table = section.reals(count, 1 + directions, "nodes")
-    mesh.tags = table[:, 0].astype(np.int64)
-    if not (mesh.tags == table[:, 0]).all() or mesh.tags.min(initial=1) < 1:
-        row = int(np.argmax((mesh.tags != table[:, 0]) | (mesh.tags < 1)))
-        section.fail(row, "not a node number", f"{table[row, 0]:g}", "a whole number from 1")
+    mesh.tags = _whole(table[:, :1], section, 0)[:, 0]
+    if mesh.tags.min(initial=1) < 1:
+        row = int(np.argmax(mesh.tags < 1))
+        section.fail(row, "not a node number", str(int(mesh.tags[row])), "a number from 1")
     if not np.isfinite(table).all():
         section.fail(int(np.argmin(np.isfinite(table).all(axis=1))), "a coordinate is not finite")
     mesh.xyz = np.zeros((count, 3))
@@ -107,8 +114,9 @@ def _elements(section: Section, mesh: _Mesh) -> None:
         if len(head) < 3 or at + 3 + head[2] > len(values):
             section.fail(-1, "the elements end too early", expected=f"{count} elements")
         if (head[1], head[2]) not in KINDS:
-            section.fail_at_number(values, at, f"elements of type {head[1]} with {head[2]} nodes are not read",
-                                   "elements of first order; second order: edges, areas, bricks, tetrahedra")  # fmt: skip
+            message = f"elements of type {head[1]} with {head[2]} nodes are not read"
+            read_are = "elements of first order; of second order edges, areas, bricks, tetrahedra"
+            section.fail_at_number(values, at, message, read_are)
         return 3 + head[2], 1
 
     starts, end = row_starts(values, count, slice(1, 3), measure)
@@ -116,6 +124,7 @@ def _elements(section: Section, mesh: _Mesh) -> None:
         section.fail(-1, f"more than the {count} elements that NELEM announces", expected="as many as NELEM")
     types, sizes = values[starts + 1], values[starts + 2]
     mesh.ids, mesh.kind, mesh.row = values[starts], np.zeros(count, np.int64), np.zeros(count, np.int64)
+    mesh.by_id = np.argsort(mesh.ids, kind="stable")
     for pair in dict.fromkeys(zip(types.tolist(), sizes.tolist(), strict=True)):
         kind, order = KINDS[pair]
         which = np.flatnonzero((types == pair[0]) & (sizes == pair[1]))
@@ -154,14 +163,22 @@ def _condition(section: Section, mesh: _Mesh, model: Model) -> None:
         section.fail(0, "a boundary condition of this type is not read", head.strip(), "type 0 (nodes) or 1 (faces)")
     width = 3 if kind else 1
     table = section.reals(count, width + values, "entries", first=1)
-    entries = np.where(np.abs(table[:, :width]) < 2**53, table[:, :width], 0).astype(np.int64)
-    if not (entries == table[:, :width]).all():
-        row = int(np.argmin((entries == table[:, :width]).all(axis=1)))
-        section.fail(1 + row, "not a whole number", expected="node, or element, type and face")
+    entries = _whole(table[:, :width], section, 1)
     mesh.conditions.append((name, kind, entries, section))
     if count and values:
         said = f"{values} value(s) of each of its {count} entries are not carried"
         model.warnings.append(f"{section.path}:{section.line + 1}: boundary condition {name}: {said}")
+
+
+def _whole(table: Floats, section: Section, first: int) -> Ints:
+    """Columns that must hold whole numbers; first: the line of the first row."""
+    good = (np.abs(table) < _EXACT) & (np.rint(table) == table)
+    if not good.all():
+        row = int(np.argmin(good.all(axis=1)))
+        section.fail(
+            first + row, "not a whole number", f"{table[row][~good[row]][0]:g}", "numbers of nodes, elements, faces"
+        )
+    return table.astype(np.int64)
 
 
 def _assemble(mesh: _Mesh, model: Model, faults: Faults) -> None:
@@ -208,34 +225,32 @@ def _unfolded(kind: str, nodes: Ints, model: Model, path: str) -> Ints:
 
 def _rows_of(ids: Ints, mesh: _Mesh, section: Section) -> Ints:
     """Places of elements in the file's order."""
-    order = np.argsort(mesh.ids, kind="stable")
-    ordered = mesh.ids[order]
-    place = np.minimum(np.searchsorted(ordered, ids), max(len(ordered) - 1, 0))
-    there = ordered[place] == ids if len(ordered) else np.zeros(len(ids), bool)
+    place = np.minimum(np.searchsorted(mesh.ids, ids, sorter=mesh.by_id), max(len(mesh.ids) - 1, 0))
+    rows = mesh.by_id[place] if len(mesh.ids) else np.zeros(0, np.int64)
+    there = mesh.ids[rows] == ids if len(mesh.ids) else np.zeros(len(ids), bool)
     if not there.all():
         section.fail(0, "an element is not there", str(int(ids[~there][0])), "a number of ELEMENTS/CELLS")
-    return order[place]
+    return rows
 
 
 def _parts(mesh: _Mesh, model: Model) -> None:
     """Each group is a part; elements of several are in that of the first."""
-    owner = np.zeros(len(mesh.ids), np.int64)
+    none = -1
+    owner = np.full(len(mesh.ids), none)
     again = 0
     for part, ids, section in mesh.groups:
         if part.id in model.parts:
             section.fail(0, "a group's number stands twice", str(part.id), "numbers that differ")
         rows = _rows_of(ids, mesh, section)
-        taken = owner[rows] != 0
-        again += int(taken.sum())
-        owner[rows[~taken]] = part.id if part.id else -1
+        again += int((owner[rows] != none).sum())
+        owner[rows[owner[rows] == none]] = part.id
         model.parts[part.id] = part
     if again:
         model.warnings.append(f"{again} times an element belongs to a further group: it is in the part of its first")
-    owner[owner == -1] = 0
-    if (owner == 0).any() and 0 not in model.parts:
+    if (owner == none).any():
         rest = 1 + max(model.parts, default=0)
         model.parts[rest] = Part(rest, "ungrouped" if rest > 1 else "")
-        owner[owner == 0] = rest
+        owner[owner == none] = rest
     for i, block in enumerate(model.blocks):
         block.part[mesh.row[mesh.kind == i]] = owner[mesh.kind == i]
         for number in np.unique(block.part).tolist():

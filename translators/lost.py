@@ -10,7 +10,7 @@ from zrno.translators.report import Report
 
 
 def report_lost(items: Iterable[Any], said: set[str], what: str, where: str, report: Report) -> None:
-    """Note what dataclass items hold beyond the fields `said`; fields that the model gets later are noted of themselves.
+    """Note what dataclass items hold beyond the fields `said`: a field that the model gets later is noted of itself.
 
     A collection counts by its length, anything else that is not its default as one. what: put before the field's name.
     """

@@ -20,7 +20,7 @@ Measure = Callable[[int, list[int]], tuple[int, int]]
 def row_starts(values: NDArray[Any], count: int, alike: slice, measure: Measure) -> tuple[Ints, int]:
     """Where the rows begin, until they hold `count` items, and where the last ends.
 
-    alike: of the first three numbers, those by which rows have equal lengths. A long run of these costs no Python a row.
+    alike: of the first three numbers, those that make lengths equal. A long run of such rows costs no Python a row.
     """
     pieces: list[Ints] = []
     at, done = 0, 0
@@ -40,7 +40,7 @@ def row_starts(values: NDArray[Any], count: int, alike: slice, measure: Measure)
 
 
 def _walk(values: NDArray[Any], at: int, count: int, measure: Measure) -> tuple[list[int], int, int] | None:
-    """Steps through rows that differ: their starts, where they end, how many items; None where the first is too long."""
+    """Steps through rows that differ: their starts, their end, how many items; None where the first is too long."""
     piece = values[at : at + _STRIDE].tolist()
     starts: list[int] = []
     i, done = 0, 0

@@ -91,10 +91,12 @@ def _line_of(data: bytes, section: bytes, number: int) -> int:
 
 def _is_part(mesh: Mesh, run: Run, top: int) -> Marks:
     """Whether an element's group is a part: always in the highest dimension, below it where our writer says so."""
+    grouped: Marks = run.groups != NO_GROUP
     if run.dimension == top:
-        return run.groups != NO_GROUP
+        return grouped
     lower = [number for dimension, number in mesh.lower_parts if dimension == run.dimension]
-    return np.isin(run.groups, lower) & (run.groups != NO_GROUP)
+    grouped &= np.isin(run.groups, lower)
+    return grouped
 
 
 def _parts(mesh: Mesh, runs: list[Run], drop: list[Marks], top: int, path: str, model: Model) -> list[Ints]:
@@ -121,14 +123,14 @@ def _parts(mesh: Mesh, runs: list[Run], drop: list[Marks], top: int, path: str, 
                 if names.get(found, ("", 0, -1))[2] < run.dimension:
                     names[found] = (name, line, run.dimension)
         numbers.append(number)
-    for number in sorted(names):
-        name, line, dimension = names[number]
-        model.parts[number] = Part(number, name, dimension=dimension, source=Source(path, line) if line else None)
+    for found, (name, line, dimension) in sorted(names.items()):
+        model.parts[found] = Part(found, name, dimension=dimension, source=Source(path, line) if line else None)
     if twice:
         others = dict.fromkeys(group for run, _ in tops for group, _ in run.further)
         said = ", ".join(mesh.names.get((top, group), (str(group), 0))[0] for group in list(others)[:5])
+        said += ", ..." if len(others) > 5 else ""
         model.warnings.append(
-            f"{path}: {twice} times an element belongs to a further group ({said}{', ...' if len(others) > 5 else ''}): "
+            f"{path}: {twice} times an element belongs to a further group ({said}): "
             "it is in the part of its first, and in the node sets of all"
         )
     return numbers

@@ -68,12 +68,11 @@ def _without_repeats(run: Run) -> Run:
 def elements_4(mesh: Mesh, numbers: Numbers) -> None:
     """$Elements of version 4: blocks of one entity and one type."""
     old = numbers.encoding.version == "4.0"
-    blocks, total = numbers.sizes(2 if old else 4).tolist()[:2]
+    blocks, total = numbers.few("nn" if old else "nnnn")[:2]
     found: dict[int, tuple[list[Ints], list[int]]] = {}
     for _ in range(blocks):
-        first, second, kind = numbers.ints(3).tolist()
+        first, second, kind, count = numbers.few("iiin")
         dimension, entity = (second, first) if old else (first, second)
-        count = int(numbers.sizes(1)[0])
         element = _element(kind, numbers, -2)
         if dimension != element.dimension:
             numbers.fail(f"{element.name} elements on an entity of this dimension", str(element.dimension), -4 + old,

@@ -6,6 +6,7 @@ whose nodes it is; where there are none such, of point elements of its own. An e
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
@@ -35,13 +36,13 @@ class Piece:
 @dataclass(slots=True)
 class Grouping:
     """entities: the groups of each, entity i + 1 of a dimension at [dimension][i]; names: (dimension, group) -> name;
-    lower_parts: the groups below the highest dimension that are parts; points: first and last of the point elements that
-    stand for node sets."""
+    lower_parts: the groups below the highest dimension that are parts; points: first and last of the point elements
+    that stand for node sets."""
 
     pieces: list[Piece] = field(default_factory=list)
     entities: list[list[tuple[int, ...]]] = field(default_factory=lambda: [[], [], [], []])
     names: dict[tuple[int, int], str] = field(default_factory=dict)
-    lower_parts: list[tuple[int, int]] = field(default_factory=list)
+    lower_parts: dict[tuple[int, int], None] = field(default_factory=dict)  # an ordered set
     points: tuple[int, int] | None = None
 
 
@@ -58,6 +59,7 @@ class _Grouper:
         self.dimensions = [TABLE[block.kind].dimension for block in self.blocks]
         self.top = max(self.dimensions, default=0)
         self.used: set[tuple[int, int]] = set()
+        self.places: dict[tuple[int, tuple[int, ...]], int] = {}
         self.labels = [np.zeros(len(block.ids), np.int64) for block in self.blocks]  # places in self.result.entities
         self._parts()
         rest = [nodes for nodes in model.node_sets if not self._is_implied(nodes)]
@@ -70,20 +72,19 @@ class _Grouper:
         numbers = self._part_numbers()
         alone = 0
         for block, dimension, label in zip(self.blocks, self.dimensions, self.labels, strict=True):
-            for number in np.unique(block.part).tolist():
-                some = block.part == number
+            for number, some in _rows_by_value(block.part):
                 owned = number in numbers
                 label[some] = self._entity(dimension, (numbers[number],) if owned else ())
                 if owned:
                     part = self.model.parts.get(number)
                     self._use(dimension, numbers[number], part.name if part else "")
-                    if dimension < self.top and (dimension, numbers[number]) not in self.result.lower_parts:
-                        self.result.lower_parts.append((dimension, numbers[number]))
+                    if dimension < self.top:
+                        self.result.lower_parts[dimension, numbers[number]] = None
                 elif dimension == self.top:
-                    alone += int(some.sum())
+                    alone += len(some)
         if alone:
             self.report.notes.append(f"{alone} elements are in no part: in a .msh file they are in no group")
-        bare = len(self.model.parts.keys() - {int(n) for block in self.blocks for n in np.unique(block.part)})
+        bare = len(self.model.parts.keys() - numbers.keys())
         self.report.drop("parts", bare, "without elements: a group has some")
 
     def _part_numbers(self) -> dict[int, int]:
@@ -116,13 +117,15 @@ class _Grouper:
     def _sets(self, sets: list[NodeSet]) -> None:
         points: list[tuple[int, str, Ints]] = []
         renumbered = 0
+        wanted = {nodes.id for nodes in sets}
+        free = (n for n in itertools.count(1) if (0, n) not in self.used and n not in wanted)
         inside = np.zeros(len(self.model.xyz), bool)
         for nodes in sets:
             inside[nodes.nodes] = True
             if not self._as_elements(nodes, inside):
                 number = nodes.id
                 if not 0 < number <= LARGEST_INT or (0, number) in self.used:
-                    number = 1 + max((n for dimension, n in self.used if dimension == 0), default=0)
+                    number = next(free)
                     renumbered += 1
                 self._use(0, number, nodes.name)
                 points.append((number, nodes.name, np.flatnonzero(inside)))
@@ -165,9 +168,10 @@ class _Grouper:
 
     def _entity(self, dimension: int, groups: tuple[int, ...]) -> int:
         entities = self.result.entities[dimension]
-        if groups not in entities:
+        place = self.places.setdefault((dimension, groups), len(entities))
+        if place == len(entities):
             entities.append(groups)
-        return entities.index(groups)
+        return place
 
     def _use(self, dimension: int, number: int, name: str) -> None:
         self.used.add((dimension, number))
@@ -179,6 +183,13 @@ class _Grouper:
 
     def _pieces(self) -> Iterator[Piece]:
         for block, label in zip(self.blocks, self.labels, strict=True):
-            for entity in np.unique(label).tolist():
-                some = slice(None) if (label == entity).all() else label == entity
+            for entity, some in _rows_by_value(label):
                 yield Piece(block.kind, entity + 1, block.ids[some], block.nodes[some])
+
+
+def _rows_by_value(values: Ints) -> Iterator[tuple[int, Ints]]:
+    """Each value and the rows that have it."""
+    order = np.argsort(values, kind="stable")
+    ordered = values[order]
+    firsts = np.flatnonzero(np.concatenate(([True], ordered[1:] != ordered[:-1])))
+    yield from zip(ordered[firsts].tolist(), np.split(order, firsts[1:]), strict=True)

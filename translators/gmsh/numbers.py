@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import re
+import struct
 import warnings
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
 from zrno.translators.model import Floats, Ints
-from zrno.translators.text import Faults
+from zrno.translators.text import Faults, InputError
 
 EXACT = 2**53  # doubles hold every whole number up to here
 LARGEST_INT = 2**31 - 1
@@ -57,6 +58,23 @@ class Numbers:
         """Numbers, of a binary section bytes, that are not yet read."""
         return (self._end if self.binary else len(self._values)) - self._at
 
+    def few(self, kinds: str) -> list[int]:
+        """One number for each letter, without numpy's cost a call: i an integer of 4 bytes, n a size_t."""
+        if self.binary:
+            form = self._order + kinds.replace("n", "Q" if self.encoding.size == 8 else "I")
+            if self.left < struct.calcsize(form):
+                self._too_few(len(kinds))
+            numbers = list(struct.unpack_from(form, self._data, self._at))
+            self._at += struct.calcsize(form)
+            return numbers
+        if self.left < len(kinds):
+            self._too_few(len(kinds))
+        values = self._take(len(kinds), "i4")
+        some: list[float] = values.tolist()
+        if not all(-LARGEST_INT <= value < EXACT and value == int(value) for value in some):
+            return self._whole(values).tolist()
+        return [int(value) for value in some]
+
     def ints(self, count: int) -> Ints:
         """Integers of 4 bytes."""
         values = self._whole(self._take(count, "i4"))
@@ -100,33 +118,39 @@ class Numbers:
             return values if values.dtype.isnative else values.astype(np.int32)
         return self._values[self._at :]
 
-    def skip(self, count: int) -> None:
-        """Go on behind the next integers, of a binary section those of 4 bytes."""
-        self._at += 4 * count if self.binary else count
+    def skip(self, count: int, size: int = 4) -> None:
+        """Go on behind the next numbers, of a binary section those of `size` bytes."""
+        if count < 0 or (size * count if self.binary else count) > self.left:
+            self._too_few(count)
+        self._at += size * count if self.binary else count
 
-    def fail(self, message: str, expected: str = "", offset: int = 0, text: str = "") -> None:
+    def fail(self, message: str, expected: str = "", offset: int = 0, text: str = "") -> NoReturn:
         """Stop with a fault at the number that was read last, or `offset` numbers from there."""
         if self.binary:
             line, column = 1 + self._data.count(b"\n", 0, self._start), 1
         else:
             line, column = self._place(max(self._at + offset, 0))
         self._faults.add(line, column, message, text, expected)
-        self._faults.stop()
+        raise InputError(self._faults.found)
 
     def _take(self, count: int, dtype: str) -> NDArray[Any]:
         if self.binary:
             kind = np.dtype(self._order + dtype)
             if count < 0 or count * kind.itemsize > self.left:
-                self.fail(f"the file ends inside ${self._section}", f"{count} more numbers")
+                self._too_few(count)
             values: NDArray[Any] = np.frombuffer(self._data[self._at : self._at + count * kind.itemsize], kind)
             self._at += count * kind.itemsize
             return values
         if count < 0 or count > self.left:
-            self._at = len(self._values)
-            self.fail(f"${self._section} ends too early", f"{count} more numbers")
+            self._too_few(count)
         text = self._values[self._at : self._at + count]
         self._at += count
         return text
+
+    def _too_few(self, count: int) -> NoReturn:
+        if not self.binary:
+            self._at = len(self._values)
+        self.fail(f"${self._section} ends too early", f"{count} more numbers")
 
     def _whole(self, values: NDArray[Any], stride: int = 1) -> Ints:
         """Numbers that must be whole, and not so large that doubles round them; they stand `stride` numbers apart."""

@@ -51,43 +51,46 @@ def entities(mesh: Mesh, numbers: Numbers) -> None:
 def partitioned_entities(mesh: Mesh, numbers: Numbers) -> None:
     """$PartitionedEntities: also, which entity a partition's entity is a piece of."""
     old = numbers.encoding.version == "4.0"
-    counts = numbers.ints(2) if old else numbers.sizes(2)
-    numbers.ints(2 * int(counts[1]))  # ghost entities, which hold no elements of their own
+    _, ghosts = numbers.few("ii" if old else "nn")
+    numbers.skip(2 * ghosts)  # ghost entities, which hold no elements of their own
     _entities(mesh, numbers, partitioned=True)
 
 
 def _entities(mesh: Mesh, numbers: Numbers, *, partitioned: bool) -> None:
     old = numbers.encoding.version == "4.0"
-    for dimension, count in enumerate(numbers.sizes(4).tolist()):
+    for dimension, count in enumerate(numbers.few("nnnn")):
         for _ in range(count):
-            tag = int(numbers.ints(1)[0])
             if partitioned:
-                parent_dimension, parent = numbers.ints(2).tolist()
-                mesh.parents[dimension, tag] = (parent_dimension, parent)
-                numbers.ints(int((numbers.ints(1) if old else numbers.sizes(1))[0]))
-            numbers.reals(6 if dimension or old else 3)
-            groups = numbers.ints(int(numbers.sizes(1)[0]))
+                tag, *parent, partitions = numbers.few("iiii" if old else "iiin")
+                mesh.parents[dimension, tag] = (parent[0], parent[1])
+                numbers.skip(partitions)
+            else:
+                (tag,) = numbers.few("i")
+            numbers.skip(6 if dimension or old else 3, 8)  # corners of its box
+            groups = numbers.ints(several).tolist() if (several := numbers.few("n")[0]) else []
             if dimension:
-                numbers.ints(int(numbers.sizes(1)[0]))
-            mesh.groups_of_entity[dimension, tag] = list(dict.fromkeys(np.abs(groups).tolist()))
+                numbers.skip(numbers.few("n")[0])  # what bounds it
+            mesh.groups_of_entity[dimension, tag] = list(dict.fromkeys(map(abs, groups)))
 
 
 def nodes_2(mesh: Mesh, numbers: Numbers, count: int) -> None:
     """$Nodes of version 2 behind its count."""
-    mesh.tags, mesh.xyz = numbers.tagged_points(count)
+    tags, points = numbers.tagged_points(count)
+    mesh.tags, mesh.xyz = np.concatenate((mesh.tags, tags)), np.concatenate((mesh.xyz, points))
 
 
 def nodes_4(mesh: Mesh, numbers: Numbers) -> None:
     """$Nodes of version 4: blocks of tags and coordinates (and parameters on the entity)."""
     old = numbers.encoding.version == "4.0"
-    blocks, total = numbers.sizes(2 if old else 4).tolist()[:2]
+    blocks, total = numbers.few("nn" if old else "nnnn")[:2]
     tags, points = [mesh.tags], [mesh.xyz]
     for _ in range(blocks):
-        first, second, parametric = numbers.ints(3).tolist()
+        first, second, parametric, count = numbers.few("iiin")
         dimension = second if old else first
-        count = int(numbers.sizes(1)[0])
         if not 0 <= dimension <= 3:
-            numbers.fail("an entity of this dimension is not known", "0, 1, 2 or 3", -2 - (not old), str(dimension))
+            numbers.fail("an entity of this dimension is not known", "0, 1, 2 or 3", -3 - (not old), str(dimension))
+        if not count:
+            continue
         width = 3 + (dimension if parametric else 0)
         if old:
             some, rows = numbers.tagged_points(count, width)
