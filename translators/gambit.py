@@ -167,7 +167,7 @@ def _condition(section: Section, mesh: _Mesh, model: Model) -> None:
     mesh.conditions.append((name, kind, entries, section))
     if count and values:
         said = f"{values} value(s) of each of its {count} entries are not carried"
-        model.warnings.append(f"{section.path}:{section.line + 1}: boundary condition {name}: {said}")
+        model.warnings.append(f"{section.path}:{section.line}: boundary condition {name}: {said}")
 
 
 def _whole(table: Floats, section: Section, first: int) -> Ints:
@@ -273,7 +273,7 @@ def _sets(mesh: _Mesh, model: Model, order: Ints, ordered: Ints) -> None:
         else:
             faces += 1
             nodes = _nodes_of_faces(mesh, model, entries, section)
-        model.node_sets.append(NodeSet(number, name, np.unique(nodes), Source(section.path, section.line + 1)))
+        model.node_sets.append(NodeSet(number, name, np.unique(nodes), Source(section.path, section.line)))
     if faces:
         model.warnings.append(f"{faces} boundary condition(s) of faces became node sets: the nodes of their faces")
 

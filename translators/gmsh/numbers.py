@@ -72,7 +72,7 @@ class Numbers:
         values = self._take(len(kinds), "i4")
         some: list[float] = values.tolist()
         if not all(-LARGEST_INT <= value < EXACT and value == int(value) for value in some):
-            return self._whole(values).tolist()
+            self._whole(values)
         return [int(value) for value in some]
 
     def ints(self, count: int) -> Ints:
