@@ -41,6 +41,7 @@ class _Mesh:
     by_id: Ints = field(default_factory=lambda: np.empty(0, np.int64))
     groups: list[tuple[Part, Ints, Section]] = field(default_factory=list)
     conditions: list[tuple[str, int, Ints, Section]] = field(default_factory=list)  # name, type, numbers
+    coded: int = 0  # conditions with codes other than 0
 
 
 def read(path: Path | str) -> Model:
@@ -164,6 +165,7 @@ def _condition(section: Section, mesh: _Mesh, model: Model) -> None:
     width = 3 if kind else 1
     table = section.reals(count, width + values, "entries", first=1)
     entries = _whole(table[:, :width], section, 1)
+    mesh.coded += any(int(word) for word in words[3:])
     mesh.conditions.append((name, kind, entries, section))
     if count and values:
         said = f"{values} value(s) of each of its {count} entries are not carried"
@@ -274,6 +276,8 @@ def _sets(mesh: _Mesh, model: Model, order: Ints, ordered: Ints) -> None:
             faces += 1
             nodes = _nodes_of_faces(mesh, model, entries, section)
         model.node_sets.append(NodeSet(number, name, np.unique(nodes), Source(section.path, section.line)))
+    if mesh.coded:
+        model.warnings.append(f"the codes of {mesh.coded} boundary condition(s) are not carried")
     if faces:
         model.warnings.append(f"{faces} boundary condition(s) of faces became node sets: the nodes of their faces")
 

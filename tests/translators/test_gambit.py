@@ -171,6 +171,7 @@ def test_groups_and_conditions(load, tmp_path: Path) -> None:
     assert [w.replace(f"{tmp_path}/", "") for w in model.warnings] == [
         "m.neu:30: boundary condition fixed: 1 value(s) of each of its 2 entries are not carried",
         "m.neu: 1 section(s) TIMESTEPDATA are not read",
+        "the codes of 2 boundary condition(s) are not carried",
         "1 boundary condition(s) of faces became node sets: the nodes of their faces",
     ]
 
