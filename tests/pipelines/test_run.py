@@ -287,6 +287,34 @@ def test_results_do_not_depend_on_threads(tmp_path: Path) -> None:
     assert_same_end(tmp_path / "1", tmp_path / "2")
 
 
+# the energy balance
+
+
+def test_an_unstable_run_that_does_not_explode_is_a_warning(tmp_path: Path) -> None:
+    source = deck(tmp_path / "impact.mcm", end_time=6.0, every=6.0)
+    done = zrno(tmp_path, "run", source.name, "-o", "out", "--set", "step_factor=2.8", "--json")
+    assert done.returncode == 0
+    result = json.loads(done.stdout)
+    (warning,) = result["warnings"]
+    assert result["status"] == "done"
+    assert f"out by {result['energy']['balance_error']:.0%} of the largest" in warning
+    assert "step_factor below 2.8" in warning
+    assert done.stderr == f"warning: {warning}\n"
+    assert load(tmp_path / "out").manifest["warnings"] == [warning]
+    assert f"WARNING {warning}" in (tmp_path / "out" / "run.log").read_text()
+
+    history = load(tmp_path / "out").history
+    kinetic, internal = history["kinetic"], history["internal"]
+    error = np.abs(kinetic + internal - kinetic[0]) / np.maximum(np.maximum(kinetic, internal), kinetic[0])
+    assert error[-1] == pytest.approx(result["energy"]["balance_error"])
+    assert f"passed 5% at t = {history['time'][np.flatnonzero(error <= 0.05)[-1] + 1]:.4g}:" in warning
+
+    quiet = zrno(tmp_path, "run", source.name, "-o", "out", "--set", "step_factor=2.8", "-q")
+    assert (quiet.returncode, quiet.stderr) == (0, "")
+    stable = run([source], output=tmp_path / "out")
+    assert stable["warnings"] == []
+
+
 # runs that end before their time
 
 
