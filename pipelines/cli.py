@@ -199,6 +199,7 @@ def run(
             options=parse(options or ()),
             quiet=quiet,
             progress=out.progress,
+            known=out.known,
         )
         text = f"{result['status']}: {result['steps']} steps to t = {result['time']:g}, {result['output']}"
         out.answer(result, "\n".join([text, *result.get("pictures", ())]))

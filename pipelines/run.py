@@ -14,7 +14,7 @@ from zrno.pipelines import options as command_options
 from zrno.pipelines.balance import Balance
 from zrno.pipelines.checkpoint import Checkpointer
 from zrno.pipelines.convert import losses, report_text
-from zrno.pipelines.errors import Missing
+from zrno.pipelines.errors import Missing, RunFailed
 from zrno.pipelines.history import History
 from zrno.pipelines.interrupt import held_back
 from zrno.pipelines.manifest import Manifest, digests
@@ -46,13 +46,15 @@ def run(
     options: Mapping[str, Any] | None = None,
     quiet: bool = True,
     progress: bool = False,
+    known: dict[str, Any] | None = None,
 ) -> dict[str, Any]:
     """Run one particle deck or a scene; returns the keys of `zrno run --json`.
 
     output: result folder (default: the input's name and `_results`, in the working folder). threads: None for all, or
     one for few particles. until: stop at this simulated time. resume: go on from the newest checkpoint of the folder,
     if it has one. options: by dotted key, as `--set` takes them (`compat=original`, scene keys, settings). quiet: no
-    warnings on stderr at the end; progress: a bar there.
+    warnings on stderr at the end; progress: a bar there. known: takes the
+    same keys as they become known, also of a run that fails.
 
     Raises InputError for bad input (nothing is written then), `Diverged` for a run that cannot go on, KeyboardInterrupt
     after the checkpoint of an interrupted one.
@@ -62,6 +64,8 @@ def run(
         raise InputError([Fault("--until", 1, 1, "the run cannot end before it starts", str(until), "0 or more")])
     paths = [Path(p) for p in inputs]
     directory = Path(output) if output is not None else Path(f"{paths[0].stem}_results")
+    known = {} if known is None else known
+    known |= {"steps": 0, "time": 0.0}
     ready = prepare(paths, chosen, directory, threads=threads, resume=resume)
     scene, deck, model, solver, state = ready.scene, ready.deck, ready.model, ready.solver, ready.state
 
@@ -109,6 +113,8 @@ def run(
             raise
         except Exception as error:
             log.error("%s", error)
+            if isinstance(error, OSError):  # a full disk is no bad input
+                raise RunFailed(str(error)) from error
             raise
         finally:
             bar.finish(solver)
@@ -132,6 +138,7 @@ def run(
             if unbalanced is not None:
                 log.warning(unbalanced)
                 result["warnings"].append(unbalanced)
+            known |= result
             manifest.update(**result)
         log.info(
             "done: %d steps to t = %g in %.2f s (%.3g particle-steps/s, compiling %.1f s), energy balance error %.2e",
