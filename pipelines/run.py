@@ -56,8 +56,8 @@ def run(
     warnings on stderr at the end; progress: a bar there. known: takes the
     same keys as they become known, also of a run that fails.
 
-    Raises InputError for bad input (nothing is written then), `Diverged` for a run that cannot go on, KeyboardInterrupt
-    after the checkpoint of an interrupted one.
+    Raises InputError for bad input (nothing is written then), `Diverged` or `RunFailed` for a run that cannot go on,
+    KeyboardInterrupt after the checkpoint of an interrupted one.
     """
     chosen = command_options.split(options or {})
     if until is not None and not until >= 0.0:
@@ -88,6 +88,7 @@ def run(
             threads=solver.threads,
             title=(scene.title if scene else "") or model.title,
             units=scene.units if scene else None,
+            dimension=solver.problem.dimension,
         )
         for report in ready.made:
             for line in report_text(report).splitlines():
@@ -161,7 +162,7 @@ def _observers(
     frames = (scene.output.every if scene else None) or control.output_interval or max(end, 1e-300) / FRAMES
     rows = control.history_interval or frames / ROWS
     saves = scene.checkpoint.every if scene and scene.checkpoint else frames
-    units = scene.system.labels() if scene and scene.system else {}
+    units = scene.system.labels(control.dimension) if scene and scene.system else {}
     return (
         ResultSeries(
             directory,
