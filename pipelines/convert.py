@@ -28,7 +28,8 @@ def convert(
     """Translate files; returns the keys of `zrno convert --json` and `notes`.
 
     A mesh becomes particles where the target is a particle deck: particles, spacing, parts and settings say how.
-    numbers: parameters of a .geo script. dialect: of the .mcm that is written. strict: what the target cannot say is an error. Raises InputError and ValueError; nothing is written then.
+    numbers: parameters of a .geo script. dialect: of the .mcm that is written. strict: what the target cannot say is
+    an error. Raises InputError and ValueError; nothing is written then.
     """
     model = merge([_read(source, numbers) for source in sources])
     source = model.summary()
