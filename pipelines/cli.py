@@ -106,6 +106,7 @@ def convert(
     with console.command(typer.Exit, json=json, verbose=verbose, quiet=quiet) as out:
         from zrno.pipelines.convert import convert as run_convert
         from zrno.pipelines.convert import report_text
+        from zrno.translators import load_settings
 
         if len(paths) < 2:
             raise ValueError("convert needs a source and a target: zrno convert SOURCE... TARGET")
@@ -115,7 +116,7 @@ def convert(
             particles=particles.value if particles else None,
             spacing=spacing,
             parts=part or (),
-            settings_file=settings,
+            settings=load_settings(settings) if settings else None,
             dialect=dialect.value if dialect else None,
             strict=strict,
         )
@@ -199,6 +200,7 @@ def run(
             options=parse(options or ()),
             quiet=quiet,
             progress=out.progress,
+            known=out.known,
         )
         text = f"{result['status']}: {result['steps']} steps to t = {result['time']:g}, {result['output']}"
         out.answer(result, "\n".join([text, *result.get("pictures", ())]))
