@@ -17,7 +17,8 @@ def report_lost(items: Iterable[Any], said: set[str], what: str, where: str, rep
     counts: dict[str, int] = {}
     for item in items:
         for f in fields(item):
-            if f.name not in said and _is_filled(value := getattr(item, f.name), f.default):
+            default = f.default if f.default_factory is MISSING else f.default_factory()
+            if f.name not in said and _is_filled(value := getattr(item, f.name), default):
                 counts[f.name] = counts.get(f.name, 0) + (len(value) if _is_list(value) else 1)
     for name, count in counts.items():
         report.drop(f"{what} {name.replace('_', ' ')}".strip(), count, where)
