@@ -123,4 +123,4 @@ def test_what_a_killed_run_left_half_written_is_removed(tmp_path: Path, solver: 
     for name in (".gitignore", ".notes.tmp"):
         (tmp_path / name).touch()
     drive(solver, [Checkpointer(tmp_path, every=100)], 1)
-    assert sorted(path.name for path in tmp_path.iterdir()) == [".gitignore", ".notes.tmp", "checkpoint_1.h5"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [".gitignore", ".notes.tmp", "checkpoint_00000001.h5"]
