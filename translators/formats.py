@@ -32,7 +32,7 @@ FORMATS = (
     Format("msh", (".msh",), "zrno.translators.gmsh.read", "zrno.translators.gmsh.write"),
     Format("geo", (".geo",), "zrno.translators.gmsh.geo"),
     Format("lsdyna", (".k", ".key", ".dyn"), missing="LS-DYNA decks are not read yet"),
-    Format("neu", (".neu",), "zrno.translators.neu"),
+    Format("neu", (".neu", ".fno"), "zrno.translators.neu", "zrno.translators.femap"),
     Format("pak", (".dat",), missing="PAK decks are not read yet"),
     Format("vtu", (".vtu",), "zrno.translators.meshio_bridge", "zrno.translators.meshio_bridge"),
 )
