@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NoReturn
 
 import numpy as np
@@ -47,28 +48,24 @@ class Cursor:
         if self.done:
             self.fail(f"block {self.block.number} ends here", what)
         self.at += 1
-        return [word for _, word in self.lines.fields(self.at - 1)]
+        return self.lines.words(self.at - 1)
 
     def numbers(self, least: int, what: str) -> list[float]:
         """The numbers of the next line, at least `least`."""
         if self.done:
             self.fail(f"block {self.block.number} ends here", what)
-        count = max(len(self.lines.fields(self.at)), least)
         self.at += 1
-        found: list[float] = self.lines.table(np.array([self.at - 1]), count, what, least)[0].tolist()
-        return found
+        return self.lines.numbers(self.at - 1, least, what)
 
-    def integers(self, least: int, what: str, smallest: int = -(2**53), most: int = 0) -> list[int]:
+    def integers(self, least: int, what: str, smallest: float = -math.inf, most: int = 0) -> list[int]:
         """The first whole numbers of the next line: at least `least`, filled up with 0 to `most`.
 
         smallest: what the first of them may be.
         """
-        most = max(least, most)
-        values = (self.numbers(least, what) + [0.0] * most)[:most]
-        row = np.array([self.at - 1])
-        self.lines.whole(np.array([values[:1]]), row, smallest, what)
-        found: list[int] = self.lines.whole(np.array([values]), row)[0].tolist()
-        return found
+        if self.done:
+            self.fail(f"block {self.block.number} ends here", what)
+        self.at += 1
+        return self.lines.integers(self.at - 1, least, max(least, most), smallest, what)
 
     def values(self, count: int, what: str) -> list[float]:
         """The next `count` numbers, on as many lines as they take."""
@@ -155,12 +152,12 @@ class Cursor:
         """Whether a set begins: a number alone, a title, and a line of at least `fields` fields or a list's end."""
         if self.done:
             return False
-        head, third = self.lines.fields(self.at), self.at + 2
+        head, third = self.lines.words(self.at), self.at + 2
         while third < self.block.last and self.lines.blank[third]:
             third += 1
-        if len(head) != 1 or not head[0][1].isdigit() or third >= self.block.last:
+        if len(head) != 1 or not head[0].isdigit() or third >= self.block.last:
             return False
-        return len(self.lines.fields(third)) >= fields or self.lines.begins_with_end(third)
+        return len(self.lines.words(third)) >= fields or self.lines.begins_with_end(third)
 
     def pass_to_set(self, fields: int) -> int:
         """Pass by all lines up to where a set begins; how many of them were no ends of lists."""

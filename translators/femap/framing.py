@@ -8,6 +8,7 @@ Source: FEMAP neutral file format, versions 4.41 and later (file structure).
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,6 +25,7 @@ _FEW, _VERY_FEW = 50_000, 100  # numbers: fewer are parsed in Python before the 
 _LARGE = 4 << 20  # bytes of a file for which they are loaded at once
 _EXACT = 2.0**53  # doubles hold every whole number up to here
 _LONE = re.compile(rb"\d{3,5}")
+_EMPTY = re.compile(rb"^,|,[ \t\r\f\v]*,")
 _FIELD = re.compile(rb"[ \t\r\f\v]*([^ \t\r\f\v,]*)[ \t\r\f\v]*(,?)")
 _KNOWN = {100, *range(401, 500), 506, 507, 533, 601, 615, 822, 918, 919, 1007, 1051}
 _WITH_LISTS = {404, 406, 407, 408, 420, 506, 507, 1007}  # whose lists may end with lines that are -1 alone
@@ -109,6 +111,35 @@ class Lines:
             found.append((match.start(1) + shift, match[1]))
             at = match.end()
         return found
+
+    def words(self, row: int) -> list[bytes]:
+        """The fields of a line."""
+        line = self._text(row)
+        if _EMPTY.search(line):
+            return [word for _, word in self.fields(row)]
+        return line.replace(b",", b" ").split()
+
+    def numbers(self, row: int, least: int, what: str) -> list[float]:
+        """The numbers of one line, at least `least`. Leaves the block after noting what is no number."""
+        found: list[float] = []
+        for place, word in enumerate(self.words(row)):
+            number = parse_real(word.decode("latin-1"))
+            if number is None or not math.isfinite(number):
+                self.fail(row, "not a number", word, "a number", self.fields(row)[place][0])
+            found.append(number)
+        if len(found) < least:
+            self.fail(row, f"{len(found)} numbers in a line of {what}", self._text(row), f"at least {least}", 1)
+        return found
+
+    def integers(self, row: int, least: int, most: int, smallest: float, what: str) -> list[int]:
+        """The first whole numbers of one line, filled up with 0 to `most`; smallest: what the first may be."""
+        found = (self.numbers(row, least, what.removesuffix("'s number")) + [0.0] * most)[:most]
+        for place, value in enumerate(found):
+            if not value.is_integer() or abs(value) >= _EXACT or (place == 0 and value < smallest):
+                column, word = self.fields(row)[place]
+                wanted = "a whole number" if place else what
+                self.fail(row, f"not {wanted}", word, wanted, column)
+        return [int(value) for value in found]
 
     def fault(self, row: int, column: int, message: str, text: bytes | str = "", expected: str = "") -> None:
         """Note a fault at a line (from 0; past the last: where the file ends) and a column (from 1)."""
@@ -210,7 +241,8 @@ class Lines:
 
     def begins_with_end(self, row: int) -> bool:
         """Whether a line ends a list."""
-        return bool(self.list_ends(np.array([row]))[0])
+        line = self._text(row)
+        return line[:2] == b"-1" and line[2:3] in (b"", b",", b" ", b"\t", b"\r", b"\f", b"\v")
 
     def below(self, rows: Ints, offset: int) -> Ints:
         """The lines that stand `offset` lines below others, blank ones not counted."""
@@ -241,8 +273,8 @@ def blocks(lines: Lines) -> list[Block]:
     skip = -1
 
     def number_at(place: int) -> int:
-        fields = lines.fields(int(filled[place])) if place < len(filled) else []
-        match = _LONE.fullmatch(fields[0][1]) if len(fields) == 1 else None
+        words = lines.words(int(filled[place])) if place < len(filled) and not is_mark[place] else []
+        match = _LONE.fullmatch(words[0]) if len(words) == 1 else None
         return int(match[0]) if match else 0
 
     for at in marks:

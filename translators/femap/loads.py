@@ -89,7 +89,7 @@ class LoadSets:
     def _pass_options(self, cursor: Cursor, lines: int) -> None:
         """Pass by options up to the first load; their number differs between versions."""
         rows = cursor.peek(_MOST + 2)
-        counts = [len(cursor.lines.fields(int(row))) for row in rows]
+        counts = [len(cursor.lines.words(int(row))) for row in rows]
         ends = [cursor.lines.begins_with_end(int(row)) for row in rows]
         tries = [_OPTION_LINES, *(k for k in range(_FEWEST, _MOST) if k != _OPTION_LINES)]
         for k in tries:

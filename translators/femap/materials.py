@@ -76,7 +76,7 @@ def read_601(cursor: Cursor) -> list[Record]:
     found: list[Record] = []
     while not cursor.done:
         source = cursor.source
-        words = [word for _, word in cursor.lines.fields(cursor.at)]
+        words = cursor.lines.words(cursor.at)
         if len(words) > 1 and words[1] != b"%d" % _FORMAT_601:
             found.append(_short(cursor, source))
             continue

@@ -82,6 +82,13 @@ class Elements:
         lines, rows = cursor.lines, cursor.rest()
         at, size, searched = 0, _FIRST_CHUNK, 0
         while at < len(rows):
+            if size == 1 and at + _STRIDE <= len(rows):
+                single, wanted = _single(lines, rows[at : at + _STRIDE])
+                if wanted:  # elements with lists often follow each other: one by one they are quicker so
+                    heads.append(np.array([single]))
+                    starts.append(rows[at : at + 1])
+                    at, searched = self._pass_lists(lines, rows, at + _STRIDE, wanted, searched)
+                    continue
             some = rows[at : at + size * _STRIDE]
             some = some[: len(some) - len(some) % _STRIDE]  # a list may stand where the rest is
             begin = some[::_STRIDE]
@@ -116,7 +123,7 @@ class Elements:
         for _ in range(count):
             place = max(at, searched)
             while place < len(rows) and not lines.begins_with_end(int(rows[place])):
-                if len(lines.fields(int(rows[place]))) > _LIST_FIELDS:  # an element's nodes: this one has no list
+                if len(lines.words(int(rows[place]))) > _LIST_FIELDS:  # an element's nodes: this one has no list
                     return at, place
                 place += 1
             if place == len(rows):
@@ -142,6 +149,14 @@ class Elements:
         return ids
 
 
+def _single(lines: Lines, rows: Ints) -> tuple[list[int], int]:
+    """An element's first line, and how many lists follow it."""
+    head = lines.integers(int(rows[0]), 5, _HEAD, 1, "an element's number")
+    flags = lines.numbers(int(rows[-1]), 1, "an element's flags")[12:_FLAGS]
+    listed = sum(flag != 0 for flag in flags)
+    return head, max(listed, int(head[4] in LISTS))
+
+
 class _Builder:
     """Makes element blocks, topology by topology."""
 
@@ -159,14 +174,15 @@ class _Builder:
         if topology in LISTS and topology != RIGID_2:
             self._say(f"elements with node lists (topology {topology}) are not read", which)
             return
+        if topology not in TOPOLOGIES and topology != RIGID_2:
+            self._say(f"elements of topology {topology} are not read", which)
+            return
         nodes = self._nodes(which, topology)
         if topology == RIGID_2:  # or a pyramid's number, in some files
             pyramid = (nodes[:, :5] > 0).all(axis=1) & (nodes[:, 5:] == 0).all(axis=1)
             self._say("elements with node lists (topology 14) are not read", which[~pyramid])
             self._block(which[pyramid], nodes[pyramid], *TOPOLOGIES[18])
             self._say("pyramids, by the pattern of their nodes", which[pyramid])
-        elif topology not in TOPOLOGIES:
-            self._say(f"elements of topology {topology} are not read", which)
         else:
             kind, order = TOPOLOGIES[topology]
             other = np.zeros(len(which), bool)

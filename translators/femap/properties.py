@@ -32,7 +32,7 @@ def read(cursor: Cursor, model: Model, version: tuple[int, int]) -> None:
     """A block of properties: each becomes a part and a section of its number."""
     odd = 0
     while not cursor.done:
-        if len(cursor.lines.fields(cursor.at)) < _SHORTEST_HEAD or not _is_head(cursor):
+        if len(cursor.lines.words(cursor.at)) < _SHORTEST_HEAD or not _is_head(cursor):
             odd += 1
             cursor.skip(1, "")
             continue
@@ -44,7 +44,7 @@ def read(cursor: Cursor, model: Model, version: tuple[int, int]) -> None:
         values = cursor.values(cursor.count("values"), "values")
         if version >= _OUTLINE_VERSION:
             cursor.skip(cursor.count("outline points"), "outline points")
-        if version >= _SECOND_OUTLINE_VERSION and not cursor.done and len(cursor.lines.fields(cursor.at)) == 1:
+        if version >= _SECOND_OUTLINE_VERSION and not cursor.done and len(cursor.lines.words(cursor.at)) == 1:
             cursor.skip(cursor.count("outline points"), "outline points")
         if number in model.parts:
             cursor.lines.fail(source.line - 1, "a property's number stands twice", str(number))
@@ -67,5 +67,5 @@ def read(cursor: Cursor, model: Model, version: tuple[int, int]) -> None:
 
 def _is_head(cursor: Cursor) -> bool:
     """Whether the next line can be a property's first: its number is positive, or no number at all (a fault)."""
-    first = cursor.lines.fields(cursor.at)[0][1]
+    first = cursor.lines.words(cursor.at)[0]
     return not first.lstrip(b"+-").isdigit() or int(first) > 0

@@ -16,6 +16,7 @@ from zrno.translators.report import Report
 _LARGEST = 99_999_999  # number of anything
 _SIMPLER = {"hex27": "hex20", "quad9": "quad8", "wedge18": "wedge15"}
 _CORNERS = ("thickness_1", "thickness_2", "thickness_3", "thickness_4")
+_FIRST_NODE = 6  # behind the numbers of an element's first line
 _DATA = {"orientation", "orientation_node", "angle"}
 
 
@@ -189,10 +190,13 @@ class Mesh:
 
 def _element_text(head: Ints, orient: Floats | None) -> Iterator[str]:
     """Records of seven lines. head (n, 26): number, property, type, topology, orientation node, flag, nodes."""
-    start = "%d,124,%d,%d,%d,1,%d,%d,\n" + 2 * ("%d," * 10 + "\n")
+    used = np.array([bool(column.any()) for column in head.T])  # what is 0 in all stands in the text as it is
+    used[:_FIRST_NODE] = True
+    places = ["%d," if there else "0," for there in used[_FIRST_NODE:]]
+    start = "%d,124,%d,%d,%d,1,%d,%d,\n" + "".join(places[:10]) + "\n" + "".join(places[10:]) + "\n"
     end = 2 * "0.,0.,0.,\n" + "0," * 16 + "\n"
     for first in range(0, len(head), CHUNK):
-        some = head[first : first + CHUNK]
+        some = head[first : first + CHUNK][:, used]
         if orient is None:
             yield ((start + "0.,0.,0.,\n" + end) * len(some)) % tuple(some.ravel().tolist())
         else:
