@@ -7,7 +7,8 @@ from typing import NoReturn
 
 import numpy as np
 
-from zrno.translators.femap.framing import Block, Lines
+from zrno.translators.femap.framing import Block
+from zrno.translators.femap.lines import Lines
 from zrno.translators.model import Ints, Source
 
 _NULL = "<NULL>"

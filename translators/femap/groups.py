@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from zrno.translators.femap.cursor import Cursor
-from zrno.translators.femap.framing import Broken
 from zrno.translators.femap.ids import Places, by_value
+from zrno.translators.femap.lines import Broken
 from zrno.translators.model import ElementSet, Ints, Model, NodeSet, Source
 
 NODE_LIST, ELEMENT_LIST = 7, 8

@@ -17,8 +17,9 @@ from zrno.translators.elements import TABLE
 from zrno.translators.femap import materials, properties, tables
 from zrno.translators.femap.constraints import ConstraintSets
 from zrno.translators.femap.cursor import Cursor
-from zrno.translators.femap.framing import Block, Broken, Lines, blocks
+from zrno.translators.femap.framing import Block, blocks
 from zrno.translators.femap.groups import Groups
+from zrno.translators.femap.lines import Broken, Lines
 from zrno.translators.femap.loads import LoadSets
 from zrno.translators.femap.mesh import Elements, Nodes
 from zrno.translators.model import Model, Part
