@@ -43,7 +43,7 @@ def to_particles(
     report = Report()
     asked = None if parts is None else [part_number(model, part) for part in parts]
     chosen = _parts(model, asked, particles)
-    materials = materials_of(model, chosen, settings)
+    materials = materials_of(model, chosen, settings, report)
     chosen = _with_laws(model, chosen, materials, report)
     filling = _filled(model, settings, particles, spacing, chosen)
     dimension = 2 if model.dimension == 2 else 3
