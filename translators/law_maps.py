@@ -49,7 +49,7 @@ def as_known(
     left = [
         f"{key} = {value:g}"
         for key, value in material.parameters.items()
-        if key not in takes and value != defaults.get(key)
+        if key not in takes and value != defaults.get(key, 0.0)
     ]
     report.approximate("material parameters", len(left), f"{name}: the deck's law has no {', '.join(left)}")
     return replace(material, parameters={key: material.parameters[key] for key in takes if key in material.parameters})
