@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
+from zrno.solvers.errors import Unsupported
 from zrno.solvers.materials import Elastic, Law, von_mises
 from zrno.solvers.sph import Body, Problem
-from zrno.translators.model import Material, Model
+from zrno.translators.model import Material, Model, ParticleControl
 from zrno.translators.text import Fault, InputError
+from zrno.translators.yaml_marks import Place
 
 # boundary code of the deck -> fixed x, y, z
 _FIXED = np.array(
@@ -21,28 +24,24 @@ QUADRATIC, LINEAR = 1.5, 0.06  # artificial viscosity where the deck leaves it b
 LEAST_DENSITY, MOST_DENSITY = 1e-10, 1e10
 
 
-def particle_problem(model: Model, path: str, *, original: bool = False) -> Problem:
-    """The problem that a particle deck poses. path: of the deck, for messages; original: as the original program does.
+def particle_problem(
+    model: Model, path: str, *, places: Mapping[str, Place] | None = None, original: bool = False
+) -> Problem:
+    """The problem that a particle deck poses. path, places: see `refusals`; original: as the original program does.
 
     Raises InputError for what the deck asks and this solver does not do.
     """
+    wrong, missing = refusals(model, path, places)
+    if wrong or missing:
+        raise InputError(sorted(wrong + missing))
     control, particles = model.particle_control, model.particles
-    if control is None or particles is None:
-        raise InputError([Fault(path, 1, 1, "not a particle deck", model.format, "a .mcm deck")])
-    faults = [Fault(path, 1, 1, what, said, "a deck without it") for what, said in _not_yet(model)]
-    bodies = []
+    assert control is not None
+    assert particles is not None
     numbers = sorted(model.materials)
-    for k, number in enumerate(numbers):
-        material = model.materials[number]
-        try:
-            strength = control.contact_laws[k] if control.contact else (0.0, 0.0)
-            bodies.append(_body(material, strength))
-        except ValueError as error:
-            line = material.source.line if material.source else 1
-            faults.append(Fault(path, line, 1, f"material {number}: {error}", "", "a law that can be computed"))
-    if faults:
-        raise InputError(faults)
-
+    bodies = [
+        _body(model.materials[number], control.contact_laws[k] if control.contact else (0.0, 0.0))
+        for k, number in enumerate(numbers)
+    ]
     n = len(particles)
     body = np.searchsorted(numbers, particles.material)
     owned = np.bincount(body, minlength=len(numbers))
@@ -99,27 +98,47 @@ def _law(material: Material) -> Law:
             return Elastic.from_engineering(p["E"], p["nu"])
         case "von_mises":
             if "failure_strain" in p:
-                raise ValueError("failure by plastic strain is not computed yet; switch it off in the deck")
+                raise Unsupported("failure by plastic strain is not computed yet")
             return von_mises(p["E"], p["nu"], p["yield_stress"], p.get("tangent_modulus", 0.0), p.get("beta", 0.0))
-    raise ValueError(f"the law {material.law} is not computed yet; elastic and von_mises are")
+    raise Unsupported(f"the law {material.law} is not computed yet; elastic and von_mises are")
 
 
-def _not_yet(model: Model) -> list[tuple[str, str]]:
-    """What a deck asks for and this solver does not do yet, with the field that asks."""
-    c = model.particle_control
-    assert c is not None
+def refusals(model: Model, path: str, places: Mapping[str, Place] | None = None) -> tuple[list[Fault], list[Fault]]:
+    """What is wrong with a particle deck that its reader cannot know, and what this solver does not do yet.
+
+    path: of the deck. places: where a control field (`h_option`) or a material (`material 1`) was said, if not in it.
+    """
+    if model.particle_control is None or model.particles is None:
+        return [Fault(path, 1, 1, "not a particle deck", model.format, "a .mcm deck")], []
+    wrong: list[Fault] = []
+    missing: list[Fault] = []
+    in_deck = {field: Place(path, *at) for field, at in model.particle_control.places.items()}
+    where = {**in_deck, **(places or {})}
+    for field, message, said in _not_yet(model.particle_control):
+        at = where.get(field, Place(path, 1, 1))
+        missing.append(Fault(at.path, at.line, at.column, f"{message} is not computed yet", said, "a deck without it"))
+    for number, material in sorted(model.materials.items()):
+        at = where.get(f"material {number}", Place(path, material.source.line if material.source else 1, 1))
+        try:
+            _law(material)
+        except Unsupported as error:
+            missing.append(Fault(at.path, at.line, at.column, f"material {number}: {error}", "", "a deck without it"))
+        except ValueError as error:
+            wrong.append(Fault(at.path, at.line, at.column, f"material {number}: {error}", "", "constants of the law"))
+    return wrong, missing
+
+
+def _not_yet(c: ParticleControl) -> list[tuple[str, str, str]]:
+    """What the control cards ask for and this solver does not do yet: field, what it is, what was said."""
     asked = [
-        (c.discretisation != 0, "the corrected discretisation is not computed yet", f"disctype {c.discretisation}"),
-        (c.kernel not in (0, 1), "only the cubic spline is computed yet", f"kernel {c.kernel}"),
-        (c.h_option != 0, "a smoothing length that changes is not computed yet", f"h_opt {c.h_option}"),
-        (c.velocity_option != 0, "XSPH is not computed yet", f"veloc_opt {c.velocity_option}"),
-        (bool(c.planes), "boundary planes are not computed yet", "symmetry 1"),
-        (
-            0.1 < c.dynamic_relaxation < 1.0,
-            "dynamic relaxation is not computed yet",
-            f"drelax {c.dynamic_relaxation:g}",
-        ),
-        (c.friction is not None, "contact friction is not computed yet", f"friction {c.friction}"),
-        (c.fluid_friction is not None, "fluid friction is not computed yet", f"friction {c.fluid_friction}"),
-    ]
-    return [(what, said) for wanted, what, said in asked if wanted]
+        (c.discretisation != 0, "discretisation", "the corrected discretisation", f"disctype {c.discretisation}"),
+        (c.kernel not in (0, 1), "kernel", "a kernel other than the cubic spline", f"kernel {c.kernel}"),
+        (c.h_option != 0, "h_option", "a smoothing length that changes", f"h_opt {c.h_option}"),
+        (c.velocity_option != 0, "velocity_option", "XSPH", f"veloc_opt {c.velocity_option}"),
+        (bool(c.planes), "planes", "boundary planes", "symmetry 1"),
+        (0.1 < c.dynamic_relaxation < 1.0, "dynamic_relaxation", "dynamic relaxation",
+         f"drelax {c.dynamic_relaxation:g}"),
+        (c.friction is not None, "friction", "contact friction", f"friction {c.friction}"),
+        (c.fluid_friction is not None, "fluid_friction", "fluid friction", f"friction {c.fluid_friction}"),
+    ]  # fmt: skip
+    return [(field, what, said) for wanted, field, what, said in asked if wanted]

@@ -2,28 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from zrno.pipelines.drafts import drafts
+from zrno.pipelines.prepare import refuse_what_is_not_run
+from zrno.pipelines.scene import SUFFIXES
 from zrno.pipelines.scene import load as load_scene
-from zrno.translators import InputError, read
+from zrno.translators import InputError, Model, read
 from zrno.translators.text import Fault
-
-SCENES = (".yaml", ".yml")
+from zrno.translators.yaml_marks import Place
 
 
 def check(paths: Sequence[Path]) -> list[dict[str, Any]]:
     """A row a file: {file, kind, faults, warnings}; a fault is {path, line, column, message, text, expected}.
 
-    A .mcm that is checked together with a .dat is read as half of a coupled pair. Decks that a scene names, and does
-    not make itself, are checked with it.
+    A .mcm that is checked together with a .dat is read as half of a coupled pair. The decks of a scene are checked with
+    it, also those that it makes; nothing is written. What is sound and cannot be run yet is a warning.
     """
     suffixes = {path.suffix.lower() for path in paths}
     rows = []
     for path in paths:
-        if path.suffix.lower() in SCENES:
+        if path.suffix.lower() in SUFFIXES:
             rows += _scene(path)
         else:
             rows.append(_file(path, paired={".mcm", ".dat"} <= suffixes))
@@ -49,20 +51,56 @@ def _file(path: Path, *, paired: bool) -> dict[str, Any]:
     try:
         model = read(path, paired=paired)
     except InputError as error:
-        return _row(path, path.suffix.lstrip("."), error)
-    return _row(path, model.format, None) | {"warnings": list(model.warnings)}
+        return _row(path, path.suffix.lstrip("."), error.faults)
+    return _sound(path, model)
 
 
 def _scene(path: Path) -> list[dict[str, Any]]:
+    """The scene, the decks that it makes (from a folder of temporary files), and those that are there."""
     try:
         scene = load_scene(path)
     except InputError as error:
-        return [_row(path, "scene", error)]
-    made = {mesh.target for mesh in scene.meshes}
-    decks = [path.parent / deck for deck in scene.decks if deck not in made]
-    return [_row(path, "scene", None), *(_file(deck, paired=len(scene.decks) == 2) for deck in decks)]
+        return [_row(path, "scene", error.faults)]
+    decks = [path.parent / deck for deck in scene.decks]
+    row = _row(path, "scene")
+    try:
+        refuse_what_is_not_run(decks)
+    except InputError as error:
+        row["warnings"] += map(_not_yet, error.faults)
+    made = {path.parent / mesh.target for mesh in scene.meshes}
+    rows = [row, *(_file(deck, paired=len(decks) == 2) for deck in decks if deck not in made)]
+    try:
+        with drafts(scene, path.parent, publishing=False) as found:
+            for draft in found:
+                model = draft.read()
+                rows.append(_sound(draft.target, model, draft.places(model)))
+                rows[-1]["warnings"] += [
+                    f"dropped: {i['count']} {i['what']} - {i['where']}" for i in draft.result["dropped"]
+                ]
+    except InputError as error:
+        row["faults"] += map(asdict, error.faults)
+    except ImportError as error:
+        row["warnings"].append(f"the decks that it makes are not checked: {error}")
+    return rows
 
 
-def _row(path: Path, kind: str, error: InputError | None) -> dict[str, Any]:
-    faults = [] if error is None else [asdict(fault) for fault in error.faults]
-    return {"file": str(path), "kind": kind, "faults": faults, "warnings": []}
+def _sound(path: Path, model: Model, places: Mapping[str, Place] | None = None) -> dict[str, Any]:
+    """The row of a file that can be read. places: see `build.refusals`."""
+    row = _row(path, model.format)
+    row["warnings"] += model.warnings
+    if model.particle_control is not None:
+        from zrno.pipelines.build import refusals
+
+        wrong, missing = refusals(model, str(path), places)
+        row["faults"] += map(asdict, sorted(wrong))
+        row["warnings"] += map(_not_yet, sorted(missing))
+    return row
+
+
+def _not_yet(fault: Fault) -> str:
+    said = f" ({fault.text})" if fault.text else ""
+    return f"{fault.path}:{fault.line}:{fault.column}: cannot be run yet: {fault.message}{said}"
+
+
+def _row(path: Path, kind: str, faults: Sequence[Fault] = ()) -> dict[str, Any]:
+    return {"file": str(path), "kind": kind, "faults": [asdict(fault) for fault in faults], "warnings": []}

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from zrno.pipelines.merge import merge
-from zrno.pipelines.scene import Scene
 from zrno.translators import Model, Report, read, settings, write
 from zrno.translators.convert import to_particles
+from zrno.translators.yaml_marks import Place
 
 
 def convert(
@@ -32,6 +32,27 @@ def convert(
     (settings by dotted key) say how. numbers: parameters of a .geo script. dialect: of the .mcm that is written.
     strict: what the target cannot say is an error. Raises InputError and ValueError; nothing is written then.
     """
+    return translate(
+        sources, target, particles=particles, spacing=spacing, parts=parts, settings_file=settings_file,
+        overrides=overrides, numbers=numbers, dialect=dialect, strict=strict,
+    )[0]  # fmt: skip
+
+
+def translate(
+    sources: Sequence[Path],
+    target: Path,
+    *,
+    particles: str | None = None,
+    spacing: float | None = None,
+    parts: Sequence[str | int] = (),
+    settings_file: Path | None = None,
+    overrides: Mapping[str, Any] | None = None,
+    places: Mapping[str, tuple[Place, Place]] | None = None,
+    numbers: Mapping[str, float] | None = None,
+    dialect: str | None = None,
+    strict: bool = False,
+) -> tuple[dict[str, Any], settings.Settings | None]:
+    """What `convert` does, and the settings that particles were made by. places: of the overrides (`settings.load`)."""
     model = merge([_read(source, numbers) for source in sources])
     source = model.summary()
     report = Report()
@@ -39,8 +60,9 @@ def convert(
         report.notes.append(f"{len(sources)} sources merged: ids of the second and later ones are offset")
     deck = target.suffix.lower() == ".mcm"
     makes_particles = deck and model.particles is None
+    analysis = None
     if makes_particles:
-        analysis = settings.load(settings_file, overrides=overrides)
+        analysis = settings.load(settings_file, overrides=overrides, places=places)
         model, made = to_particles(model, analysis, particles or "solids", spacing, list(parts) or None)
         report.extend(made)
     elif particles or spacing or parts or settings_file or overrides:
@@ -48,38 +70,23 @@ def convert(
     if dialect is not None and not deck:
         raise ValueError(f"{target}: a dialect is for .mcm decks")
     report.extend(_write(model, target, {} if dialect is None else {"dialect": dialect}, report if strict else None))
-    return {
+    result = {
         "source": source,
         "target": model.summary() | {"format": target.suffix.lower().lstrip(".")},
         **report.as_dict(),
         "notes": report.notes,
     }
+    return result, analysis
 
 
-def make_decks(scene: Scene, folder: Path) -> list[dict[str, Any]]:
-    """Make every deck that a scene makes from a mesh, in the scene's folder; returns what `convert` returns of each."""
-    return [
-        convert(
-            [folder / mesh.source],
-            folder / mesh.target,
-            particles=mesh.particles,
-            spacing=mesh.spacing,
-            parts=mesh.part,
-            settings_file=None if mesh.settings is None else folder / mesh.settings,
-            overrides=mesh.set,
-            numbers=mesh.numbers,
-            dialect=mesh.dialect,
-        )
-        for mesh in scene.meshes
-    ]
+def losses(result: Mapping[str, Any], *kinds: str) -> list[str]:
+    """What was lost, a line each. kinds: approximated, dropped."""
+    return [f"{kind}: {i['count']} {i['what']} - {i['where']}" for kind in kinds for i in result[kind]]
 
 
 def report_text(result: Mapping[str, Any]) -> str:
-    """What was approximated and dropped, a line each."""
-    lines = [
-        f"{kind}: {i['count']} {i['what']} - {i['where']}" for kind in ("approximated", "dropped") for i in result[kind]
-    ]
-    return "\n".join([*result["notes"], *lines])
+    """Remarks, and what was approximated and dropped, a line each."""
+    return "\n".join([*result["notes"], *losses(result, "approximated", "dropped")])
 
 
 def _read(path: Path, numbers: Mapping[str, float] | None) -> Model:

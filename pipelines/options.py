@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
-import yaml
-
-from zrno.pipelines.marked import did_you_mean, parse_value
-from zrno.pipelines.scene import OF_EVERY_MESH, Scene
+from zrno.pipelines.scene import OF_EVERY_MESH, Scene, option_places
 from zrno.translators.model import Model
-from zrno.translators.settings import TABLE
+from zrno.translators.settings import TABLE, Settings
 from zrno.translators.settings import load as load_settings
 from zrno.translators.text import Fault, InputError
+from zrno.translators.yaml_marks import Place, did_you_mean, parse_value
 
 RUN = {"compat": ("original",)}
 SETTINGS = tuple(item.key for item in TABLE)
 
 # Settings that a deck holds as they are: key -> field of the particle control cards.
-_CONTROL = {
+CONTROL = {
     "end_time": "end_time",
     "step_factor": "step_factor",
     "initial_step": "initial_step",
@@ -28,6 +26,8 @@ _CONTROL = {
     "step_option": "step_option",
     "h_option": "h_option",
 }
+# Settings that it holds in another form.
+_OTHER_CONTROL = {"xsph": "velocity_option", "gravity": "base_acceleration", "friction": "friction"}
 
 
 @dataclass(slots=True)
@@ -47,7 +47,7 @@ def parse(pairs: Sequence[str]) -> dict[str, Any]:
         key, equals, text = pair.partition("=")
         try:
             options[key.strip()] = parse_value(text)
-        except yaml.YAMLError:
+        except ValueError:
             faults.append(Fault("--set", 1, len(key) + 2, f"the value of {key} is not YAML", text, "KEY=VALUE"))
         if not equals or not key.strip():
             faults.append(Fault("--set", 1, 1, "not a key and its value", pair, "KEY=VALUE"))
@@ -83,24 +83,25 @@ def split(options: Mapping[str, Any]) -> Options:
     return found
 
 
-def apply(settings: Mapping[str, Any], model: Model) -> None:
-    """Put settings into a deck that was read. Raises InputError for those that only a mesh can be made with."""
-    known = (*_CONTROL, "xsph", "gravity", "viscosity.quadratic", "viscosity.linear")
+def apply(settings: Mapping[str, Any], model: Model) -> dict[str, Place]:
+    """Put settings into a deck that was read; returns the places of the control fields that they replaced.
+
+    Raises InputError for those that only a mesh can be made with.
+    """
+    known = (*CONTROL, "xsph", "gravity", "viscosity.quadratic", "viscosity.linear")
     faults = []
     for key, value in settings.items():
         if key not in known:
             message = f"{key} is for decks that a scene makes from a mesh; this deck is there already"
             faults.append(Fault("--set", 1, len(key) + 2, message, str(value), ", ".join(known)))
-            continue
-        try:
-            load_settings(None, overrides={key: value})
-        except InputError as error:
-            faults += [replace(fault, path="--set", column=len(key) + 2) for fault in error.faults]
     if faults:
         raise InputError(faults)
-    values = load_settings(None, overrides=settings)
+    values = load_settings(
+        None, overrides=settings, places={key: option_places(key, settings[key]) for key in settings}
+    )
     control = model.particle_control
-    assert control is not None
+    if control is None:  # not a particle deck: said when it is run
+        return {}
     for key in settings:
         match key:
             case "xsph":
@@ -112,4 +113,11 @@ def apply(settings: Mapping[str, Any], model: Model) -> None:
                 for material in model.materials.values():
                     setattr(material, name, values["viscosity"][key.partition(".")[2]])
             case _:
-                setattr(control, _CONTROL[key], values[key])
+                setattr(control, CONTROL[key], values[key])
+    return control_places(values)
+
+
+def control_places(settings: Settings) -> dict[str, Place]:
+    """The places of the values of settings, by the field of the particle control that each became."""
+    fields = CONTROL | _OTHER_CONTROL
+    return {field: settings.place(key, value=True) for key, field in fields.items() if settings.gives(key)}

@@ -15,7 +15,7 @@ from zrno.pipelines.quantities import field as field_of
 from zrno.pipelines.quantities import quantity
 from zrno.pipelines.replacing import replacing
 from zrno.pipelines.stage import FINE, Stage, scale_for
-from zrno.pipelines.view import Extent, axes, extent, is_flat
+from zrno.pipelines.view import LEAST_PIXELS, MOST_PIXELS, Extent, axes, extent, is_flat
 from zrno.translators.text import Fault, InputError
 
 SERIES = "particles"
@@ -47,8 +47,9 @@ def render(
     target = Path(output) if output is not None else result.directory / _name(field, time, view)
     if target.suffix not in (".png", *movie.SUFFIXES):
         raise ValueError(f"{target} is neither a picture nor a film: give .png, {' or '.join(movie.SUFFIXES)}")
-    if min(size) < 64 or max(size) > 8192:
-        raise ValueError(f"a picture of {size[0]} x {size[1]} pixels cannot be drawn: give 64 to 8192 a side")
+    if min(size) < LEAST_PIXELS or max(size) > MOST_PIXELS:
+        limits = f"{LEAST_PIXELS} to {MOST_PIXELS}"
+        raise ValueError(f"a picture of {size[0]} x {size[1]} pixels cannot be drawn: give {limits} a side")
     film = target.suffix in movie.SUFFIXES
     if film:
         movie.require(target)

@@ -10,23 +10,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zrno.pipelines import options as command_options
-from zrno.pipelines import scene as scenes
-from zrno.pipelines.checkpoint import Checkpointer, load_latest
-from zrno.pipelines.convert import make_decks, report_text
+from zrno.pipelines.checkpoint import Checkpointer
+from zrno.pipelines.convert import report_text
 from zrno.pipelines.history import History
 from zrno.pipelines.interrupt import held_back
 from zrno.pipelines.manifest import Manifest, digests
+from zrno.pipelines.prepare import prepare
 from zrno.pipelines.progress import Progress
 from zrno.pipelines.scene import Scene
 from zrno.pipelines.series import ResultSeries
-from zrno.translators import read
 from zrno.translators.model import Model
 from zrno.translators.text import Fault, InputError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from zrno.solvers.sph import Solver
     from zrno.solvers.time import Observer
 
 FRAMES = 20  # frames of a run whose deck names no interval
@@ -60,21 +58,17 @@ def run(
     if until is not None and not until >= 0.0:
         raise InputError([Fault("--until", 1, 1, "the run cannot end before it starts", str(until), "0 or more")])
     paths = [Path(p) for p in inputs]
-    scene, deck, made = _what_to_run(paths, chosen)
-    model = read(deck)
-    if scene is None:
-        command_options.apply(chosen.settings, model)
     directory = Path(output) if output is not None else Path(f"{paths[0].stem}_results")
+    ready = prepare(paths, chosen, directory, threads=threads, resume=resume)
+    scene, deck, model, solver, state = ready.scene, ready.deck, ready.model, ready.solver, ready.state
 
-    started = time.perf_counter()
     from zrno.solvers.jit import compile_seconds
     from zrno.solvers.time import run as run_to_end
 
-    solver, state = _solver(model, deck, directory, chosen.run, threads, resume)
     end = model.particle_control.end_time if model.particle_control else 0.0
     end = end if until is None else min(end, until)
 
-    series, history, checkpointer = _observers(model, scene, directory, end, digests([deck]), resume=state is not None)
+    series, history, checkpointer = _observers(model, scene, directory, end, ready.digest, resume=state is not None)
     bar = Progress(end, show=progress)
     watchers: list[Observer] = [series, history, checkpointer, bar]
     result: dict[str, Any] = {}
@@ -87,12 +81,14 @@ def run(
             title=(scene.title if scene else "") or model.title,
             units=scene.units if scene else None,
         )
-        for report in made:
+        for report in ready.made:
             for line in report_text(report).splitlines():
                 log.info("making %s: %s", deck.name, line)
         for warning in model.warnings:
             log.warning(warning)
-        model.warnings += [f"dropped: {i['count']} {i['what']} - {i['where']}" for m in made for i in m["dropped"]]
+        model.warnings += [
+            f"dropped: {i['count']} {i['what']} - {i['where']}" for m in ready.made for i in m["dropped"]
+        ]
         log.info("%s: %d particles, end time %g; built for %s", deck.name, solver.n, end, solver.kernels())
         if state is not None:
             log.info("resumed at t = %g, step %d", solver.time, solver.step)
@@ -120,7 +116,7 @@ def run(
                 "status": status,
                 "steps": solver.step,
                 "time": solver.time,
-                "wall_seconds": time.perf_counter() - started,
+                "wall_seconds": time.perf_counter() - ready.started,
                 "compile_seconds": compile_seconds(),
                 "particles": solver.n,
                 "nodes": 0,
@@ -136,49 +132,9 @@ def run(
             solver.step, solver.time, seconds, result["particle_steps_per_second"], result["compile_seconds"],
             result["energy"]["balance_error"],
         )  # fmt: skip
-    result["pictures"] = _pictures(scene, directory, result["warnings"])
+        result["pictures"] = _pictures(scene, directory, result["warnings"])
+        manifest.update(warnings=result["warnings"], pictures=result["pictures"])
     return result
-
-
-def _what_to_run(
-    paths: Sequence[Path], chosen: command_options.Options
-) -> tuple[Scene | None, Path, list[dict[str, Any]]]:
-    """The scene, if one was given; the particle deck, made if a scene makes it; what `convert` reports of that."""
-    if len(paths) == 1 and paths[0].suffix.lower() in (".yaml", ".yml"):
-        scene = scenes.load(paths[0], chosen.scene)
-        folder = paths[0].parent
-        decks = [folder / deck for deck in scene.decks]
-        _only_particles(decks)
-        return scene, decks[0], make_decks(scene, folder)
-    _only_particles(paths)
-    unused = [key for key in chosen.scene if key not in chosen.settings]
-    if unused:
-        raise InputError([Fault("--set", 1, 1, f"{key} is for scenes", key, "a scene") for key in unused])
-    return None, paths[0], []
-
-
-def _only_particles(decks: Sequence[Path]) -> None:
-    """Refuse what later versions will run."""
-    for deck in decks:
-        if deck.suffix.lower() == ".dat":
-            raise InputError([Fault(str(deck), 1, 1, "finite elements are not run yet", "", "a particle deck .mcm")])
-    if len(decks) != 1:
-        raise InputError([Fault(str(decks[-1]), 1, 1, "one run takes one particle deck", "", "one .mcm or one scene")])
-
-
-def _solver(
-    model: Model, deck: Path, directory: Path, run_options: Mapping[str, Any], threads: int | None, resume: bool
-) -> tuple[Solver, Mapping[str, Any] | None]:
-    """The solver at its start or where the newest checkpoint left it; and that checkpoint."""
-    from zrno.pipelines.build import particle_problem
-    from zrno.solvers.sph import Solver
-
-    problem = particle_problem(model, str(deck), original=run_options.get("compat") == "original")
-    state = load_latest(directory, inputs=digests([deck])) if resume else None
-    solver = Solver(problem, threads=threads)
-    if state is not None:
-        solver.restore(dict(state))
-    return solver, state
 
 
 def _observers(
@@ -209,6 +165,7 @@ def _all_options(
     from dataclasses import asdict
 
     control = asdict(model.particle_control) if model.particle_control else {}
+    control.pop("places", None)
     return {
         "scene": scene.model_dump() if scene else None,
         "control": control,
@@ -218,19 +175,20 @@ def _all_options(
 
 
 def _pictures(scene: Scene | None, directory: Path, warnings: list[str]) -> list[str]:
-    """The pictures that a scene asks for. A machine that cannot draw has still run: that is a warning."""
+    """The pictures that a scene asks for. The run is done whether they can be drawn or not: that is a warning."""
     drawn: list[str] = []
-    for picture in scene.render if scene else ():
+    for i, picture in enumerate(scene.render if scene else ()):
         from zrno.pipelines.errors import Missing
         from zrno.pipelines.render import render
 
         try:
             files = render(directory, field=picture.field, time=picture.time, view=picture.view, size=picture.size)
             drawn += [str(file) for file in files]
-        except Missing as error:
-            warnings.append(str(error))
-            log.warning("%s", error)
-            break
+        except (Missing, ValueError) as error:
+            warnings.append(f"render.{i} is not drawn: {error}")
+            log.warning(warnings[-1])
+            if isinstance(error, Missing):  # as for all others
+                break
     return drawn
 
 

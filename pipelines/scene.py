@@ -8,18 +8,29 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    PrivateAttr,
+    ValidationError,
+    ValidationInfo,
+    field_validator,
+)  # fmt: skip
 from pydantic_core import ErrorDetails, PydanticCustomError
 
-from zrno.pipelines import marked
-from zrno.pipelines.marked import Location, Marked, Place, did_you_mean, dotted
 from zrno.pipelines.units import SYSTEMS, Units
-from zrno.pipelines.view import VIEWS
+from zrno.pipelines.view import LEAST_PIXELS, MOST_PIXELS, VIEWS
 from zrno.translators import settings as analysis
-from zrno.translators.text import MAX_FAULTS, Fault, InputError
+from zrno.translators import yaml_marks
+from zrno.translators.text import Fault, Faults, InputError
+from zrno.translators.yaml_marks import Location, Marked, Place, did_you_mean, dotted
 
+SUFFIXES = (".yaml", ".yml")
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Pixels = Annotated[int, Field(ge=LEAST_PIXELS, le=MOST_PIXELS)]
 
 
 def _as_list(value: Any) -> Any:
@@ -100,7 +111,7 @@ class Picture(Section):
     field: str = "von_mises"
     time: float | str = "last"
     view: str = "iso"
-    size: tuple[Annotated[int, Field(gt=0)], Annotated[int, Field(gt=0)]] = (1280, 720)
+    size: tuple[Pixels, Pixels] = (1280, 720)
 
     @field_validator("time")
     @classmethod
@@ -152,6 +163,7 @@ class Scene(Section):
     render: list[Picture] = []
     checkpoint: Checkpoint | None = None
     study: Study | None = None
+    _document: Marked = PrivateAttr(default_factory=lambda: Marked("scene", {}, Faults("scene")))
 
     @field_validator("decks")
     @classmethod
@@ -166,6 +178,31 @@ class Scene(Section):
         """The labels of the scene's units; None where it names none."""
         return None if self.units is None else SYSTEMS[self.units]
 
+    def fault(self, location: Location, message: str, expected: str = "") -> Fault:
+        """A fault at a place of the scene's file."""
+        place = self._document.place(location)
+        return Fault(place.path, place.line, place.column, message, place.text, expected)
+
+    def places(self, mesh: int) -> dict[str, tuple[Place, Place]]:
+        """Where the settings of a mesh stand that the scene itself gives: key and value, by dotted key; "" its own."""
+        whole = self._document.place(("meshes", mesh))
+        given = self._document.data["meshes"][mesh].get("set", {})
+        return {"": (whole, whole), **_places(self._document, ("meshes", mesh, "set"), given)}
+
+
+def _places(
+    document: Marked, above: Location, data: Mapping[str, Any], dots: str = ""
+) -> dict[str, tuple[Place, Place]]:
+    """The places of the leaves of nested mappings, by dotted key; the same keys as `_flat` gives."""
+    found: dict[str, tuple[Place, Place]] = {}
+    for key, value in data.items():
+        location = (*above, key)
+        if isinstance(value, dict):
+            found |= _places(document, location, value, f"{dots}{key}.")
+        else:
+            found[f"{dots}{key}"] = document.place(location, key=True), document.place(location)
+    return found
+
 
 # What `--set KEY=VALUE` may name of a mesh without saying which: it holds for all of them.
 OF_EVERY_MESH = ("spacing", "particles", "dialect", "numbers")
@@ -177,12 +214,12 @@ def load(path: Path | str, options: Mapping[str, Any] | None = None) -> Scene:
     A key of the scene replaces that key; a key of `OF_EVERY_MESH` and one of the settings is for all meshes.
     Raises InputError with every fault, up to 20, also for files that the scene names and that are not there.
     """
-    document = marked.load(path)
+    document = yaml_marks.load(path)
     if not isinstance(document.data, dict):
         document.fault((), "a scene is a mapping of keys", "title, decks, ...")
-        document.faults.stop()
+        document.stop()
     for key, value in (options or {}).items():
-        place = Place("--set", 1, len(key) + 2, str(value))
+        at, place = option_places(key, value)
         targets = _targets(document.data, key)
         if not targets:
             message, expected = (
@@ -191,19 +228,24 @@ def load(path: Path | str, options: Mapping[str, Any] | None = None) -> Scene:
             )
             document.faults.found.append(Fault(place.path, 1, 1, message, place.text, expected))
         for location in targets:
-            document.override(location, value, place)
-    scene = None
+            document.override(location, value, place, at)
     try:
         scene = Scene.model_validate(document.data)
     except ValidationError as error:
         for detail in error.errors():
             _note(document, detail)
-    if scene is not None:
-        _check_files(document, scene, Path(path).parent)
-        _check_settings(document, scene, Path(path).parent)
-    if scene is None or document.faults.found:
-        raise InputError(sorted(set(document.faults.found))[:MAX_FAULTS])
+        document.stop()
+        raise
+    scene._document = document
+    _check_files(document, scene, Path(path).parent)
+    _check_settings(document, scene, Path(path).parent)
+    document.stop()
     return scene
+
+
+def option_places(key: str, value: Any) -> tuple[Place, Place]:
+    """Where the key and the value of a `--set` stand."""
+    return Place("--set", 1, 1, key), Place("--set", 1, len(key) + 2, str(value))
 
 
 def _targets(data: dict[str, Any], key: str) -> list[Location]:
@@ -271,6 +313,11 @@ def _check_files(document: Marked, scene: Scene, folder: Path) -> None:
     named += [(("decks", i), deck) for i, deck in enumerate(scene.decks) if deck not in made]
     if scene.study is not None and scene.study.reference is not None:
         named.append((("study", "reference"), scene.study.reference))
+    for i, mesh in enumerate(scene.meshes):
+        target = folder / mesh.target
+        if target.is_dir() or not target.parent.is_dir():
+            message = "a folder" if target.is_dir() else "in a folder that there is not"
+            document.fault(("meshes", i, "target"), f"meshes.{i}.target: {message}", "the name of a file to make")
     for location, name in named:
         if not (folder / name).is_file():
             expected = "a file beside the scene" + (", or a target of meshes" if location[0] == "decks" else "")
@@ -284,15 +331,6 @@ def _check_settings(document: Marked, scene: Scene, folder: Path) -> None:
         if file is not None and not file.is_file():
             continue
         try:
-            analysis.load(file, overrides=mesh.set)
+            analysis.load(file, overrides=mesh.set, places=scene.places(i))
         except InputError as error:
-            for fault in error.faults:
-                key = next(
-                    (key for key in mesh.set if (fault.line, fault.column) == (1, 1) and key in fault.message), ""
-                )
-                if key or file is None:
-                    here: Location = ("meshes", i, "set", key)
-                    nested: Location = ("meshes", i, "set", *key.split("."))
-                    document.fault(here if here in document.values else nested, fault.message, fault.expected)
-                else:
-                    document.faults.found.append(fault)
+            document.faults.found += error.faults

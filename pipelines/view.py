@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 Vector = NDArray[np.float64]
 _UP = {"x": (0, 0, 1), "y": (0, 0, 1), "z": (0, 1, 0), "iso": (0, 0, 1)}
 _TOWARDS_CAMERA = {"x": (1, 0, 0), "y": (0, -1, 0), "z": (0, 0, 1), "iso": (0.9, -1.25, 0.75)}
+LEAST_PIXELS, MOST_PIXELS = 64, 8192  # of a side of a picture
 VIEWS = ("iso", "x", "y", "z", "-x", "-y", "-z")
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from zrno.pipelines import cli, console
+from zrno.pipelines import cli, console, run
 from zrno.translators import write
 from zrno.translators.model import Material, Model, ParticleControl, Particles
 
@@ -43,7 +43,10 @@ def tree(where: Path) -> dict[str, bytes | None]:
 
 @pytest.fixture
 def refused(folder: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Callable[..., str]:
-    """What run says about an input (and check, which says the same); asserts what holds of every bad input."""
+    """What run says about an input (and check, which says the same); asserts what holds of every bad input.
+
+    command: another one that is to refuse its words.
+    """
 
     def call(command: str, *words: str) -> str:
         console._answers.clear()
@@ -54,12 +57,14 @@ def refused(folder: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest
         _, said = capfd.readouterr()
         assert stop.value.code == 2, said
         assert said.endswith("\n")
-        for line in said.splitlines():
+        for line in said.splitlines() if command != "convert" else ():  # its targets have no lines
             assert PLACE.fullmatch(line), line
         assert tree(folder) == before
         return said
 
-    def both(name: str, *words: str) -> str:
+    def both(name: str, *words: str, command: str = "") -> str:
+        if command:
+            return call(command, name, *words)
         said = call("run", name, *words)
         if not words:
             assert call("check", name) == said
@@ -166,7 +171,7 @@ def test_a_missing_file_and_a_folder(folder: Path, refused: Callable[..., str]) 
         (["--set", "end_time"], "--set:1:1: error: not a key and its value"),
         (["--set", "compat=new"], "--set:1:8: error: compat has a wrong value (new)"),
         (["--set", "output.every=1"], "--set:1:1: error: output.every is for scenes"),
-        (["--set", "h_option=1"], "error: a smoothing length that changes is not computed yet"),
+        (["--set", "h_option=1"], "--set:1:10: error: a smoothing length that changes is not computed yet"),
         (["--set", "end_time=soon"], "--set:1:10: error: end_time is not what it should be (soon)"),
         (["--set", "materials.steel.E=5"], "--set:1:19: error: materials.steel.E is for decks that a scene makes"),
         (["--until", "-1"], "--until:1:1: error: the run cannot end before it starts (-1.0)"),
@@ -177,12 +182,108 @@ def test_options_that_cannot_be(refused: Callable[..., str], words: list[str], m
     assert message in refused("sound.mcm", *words)
 
 
-def test_a_scene_that_cannot_be_run_writes_no_deck(folder: Path, refused: Callable[..., str]) -> None:
-    (folder / "scene.yaml").write_text(
-        "meshes: [{source: sound.msh, target: made.mcm, set: {end_tme: 3}}]\ndecks: [made.mcm]\n"
-    )
-    (folder / "sound.msh").write_text("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n")
-    assert "scene.yaml:1:" in refused("scene.yaml")
+SCENE = """\
+meshes: [{source: plate.msh, target: plate.mcm, settings: plate.yaml, spacing: 0.25}]
+decks: [plate.mcm]
+"""
+SETTINGS = """\
+end_time: 0.1
+materials:
+  plate: {law: von_mises, density: 2, E: 10, nu: 0.3, yield_stress: 1}
+"""
+
+
+@pytest.fixture
+def scene(folder: Path, plate_msh: str) -> Callable[..., str]:
+    """scene((old, new), ...): a scene that makes its deck, with texts replaced in whichever file has them."""
+
+    def make(*changes: tuple[str, str]) -> str:
+        for name, text in (("plate.msh", plate_msh), ("scene.yaml", SCENE), ("plate.yaml", SETTINGS)):
+            for old, new in changes:
+                text = text.replace(old, new)
+            (folder / name).write_text(text)
+        (folder / "plate.mcm").write_text("what stood here before\n")
+        (folder / "full.mcm").mkdir()
+        (folder / "scene_results").mkdir()
+        (folder / "scene_results" / "history.csv").write_text("time\ns\n0\n")
+        return "scene.yaml"
+
+    return make
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (("end_time: 0.1", "end_tme: 3"), "plate.yaml:1:1: error: unknown key end_tme"),
+        (("spacing: 0.25", "spacing: 0.25, set: {end_tme: 3}"), "scene.yaml:1:92: error: unknown key end_tme"),
+        (("spacing: 0.25", "part: wing"), "scene.yaml:1:10: error: the mesh has no part wing"),
+        (("  plate: {law", "  wing: {law"), "plate.yaml:3:3: error: materials of a part that the mesh does not have"),
+        (("4 0 1 0", "4 0 x 0"), "plate.msh:14:5: error: "),
+        (("plate.mcm", "lost/plate.mcm"), "scene.yaml:1:38: error: meshes.0.target: in a folder that there is not"),
+        (("plate.mcm", "full.mcm"), "scene.yaml:1:38: error: meshes.0.target: a folder"),
+    ],
+)
+def test_a_scene_of_bad_input_writes_no_deck(
+    scene: Callable[..., str], refused: Callable[..., str], change: tuple[str, str], message: str
+) -> None:
+    assert message in refused(scene(change))
+
+
+@pytest.mark.parametrize(
+    ("change", "words", "message"),
+    [
+        (("", ""), ["--set", "h_option=1"], "--set:1:10: error: a smoothing length that changes is not computed yet"),
+        (("", ""), ["--set", "xsph=true"], "--set:1:6: error: XSPH is not computed yet"),
+        (("end_time: 0.1", "h_option: 2"), [], "plate.yaml:1:11: error: a smoothing length that changes is not"),
+        (("spacing: 0.25", "set: {friction: {static: 0.5, kinetic: 0.4}}"), [],
+         "scene.yaml:1:96: error: contact friction is not computed yet (friction (0.5, 0.4))"),
+        (("yield_stress: 1", "yield_stress: 1, failure_strain: 0.1"), [],
+         "plate.yaml:3:88: error: material 1: failure by plastic strain is not computed yet"),
+        (("decks: [", "render: [{field: presure}]\ndecks: ["), [],
+         "scene.yaml:2:18: error: render.0.field: no such field (presure); expected pressure (did you mean that?)"),
+        (("", ""), ["-o", "plate.yaml"], "plate.yaml:1:1: error: not a folder"),
+    ],
+)  # fmt: skip
+def test_a_scene_that_the_solver_refuses_writes_nothing(
+    scene: Callable[..., str], refused: Callable[..., str], change: tuple[str, str], words: list[str], message: str
+) -> None:
+    name = scene(change)
+    assert message in refused(name, *words, command="run")
+
+
+def test_a_scene_whose_deck_changed_is_not_resumed_and_its_deck_not_replaced(
+    folder: Path, scene: Callable[..., str], refused: Callable[..., str], capfd: pytest.CaptureFixture[str]
+) -> None:
+    name = scene()
+    run([name])
+    assert (folder / "plate.mcm").read_text().startswith("plate")
+    said = refused(name, "--resume", "--set", "spacing=0.5")
+    assert "plate.mcm:1:1: error: not the input that checkpoint_" in said
+
+
+@pytest.mark.parametrize(
+    ("words", "change", "message"),
+    [
+        (["plate.msh", "new.mcm"], ("", ""), "--settings:1:1: error: a part has no material (plate)"),
+        (["plate.msh", "new.mcm", "--settings", "plate.yaml"], (", E: 10", ""), "plate.yaml:3:3: error: materials."),
+        (["plate.msh", "new.mcm", "--settings", "lost.yaml"], ("", ""), "lost.yaml:1:1: error: no such file"),
+        (["plate.msh", "plate.mcm", "--settings", "plate.yaml", "--strict"], ("", ""), "the target cannot say all"),
+        (["plate.msh", "new.vtu", "--dialect", "2.07"], ("", ""), "new.vtu: a dialect is for .mcm decks"),
+        (["plate.msh", "new.vtu", "--spacing", "2"], ("", ""), "make a particle deck (.mcm) of a mesh"),
+        (["plate.msh", "new.xyz"], ("", ""), "new.xyz: files of this kind are not written"),
+        (["sound.mcm", "new.mcm", "--particles", "nodes"], ("", ""), "make a particle deck (.mcm) of a mesh"),
+        (["plate.msh", "lost/new.mcm", "--settings", "plate.yaml"], ("", ""), "no such file or directory"),
+    ],
+)  # fmt: skip
+def test_a_refused_conversion_writes_nothing(
+    scene: Callable[..., str],
+    refused: Callable[..., str],
+    words: list[str],
+    change: tuple[str, str],
+    message: str,
+) -> None:
+    scene(change)
+    assert message in refused(*words, command="convert")
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,10 @@ class Analysis:
 
 @dataclass(slots=True)
 class ParticleControl:
-    """Control cards 1-7 of a particle deck, by the deck's own terms; None or 0 mean the deck's default."""
+    """Control cards 1-7 of a particle deck, by the deck's own terms; None or 0 mean the deck's default.
+
+    places: line and column of what was read, by field, for messages.
+    """
 
     dimension: int = 3
     discretisation: int = 0
@@ -52,6 +55,7 @@ class ParticleControl:
     planes: list[tuple[int, float]] | None = None
     contact_option: int = 1
     contact_laws: list[tuple[float, float]] = field(default_factory=list)
+    places: dict[str, tuple[int, int]] = field(default_factory=dict, compare=False)
 
 
 @dataclass(slots=True)

@@ -37,11 +37,8 @@ def to_particles(
     filling = _filled(model, particles, spacing, chosen)
     dimension = 2 if model.dimension == 2 else 3
     if settings["dimension"] not in (None, dimension):
-        faults = settings.faults()
-        faults.add_at(
-            settings.place("dimension"), "the mesh has another dimension", str(settings["dimension"]), str(dimension)
-        )
-        faults.stop()
+        settings.fault(("dimension",), "the mesh has another dimension", settings["dimension"], str(dimension))
+        settings.stop()
     target = Model(title=_title(model.title), format="mcm", version="2", dimension=dimension)
     numbers = {part: number for number, part in enumerate(chosen, 1)}
     count = len(filling.x)
@@ -59,7 +56,7 @@ def to_particles(
     target.particle_control = _control(target, settings, dimension)
     _report_lost(model, chosen, particles, report)
     report.notes.append(f"{count} particles in {len(chosen)} part(s)")
-    if ("end_time",) not in settings.given:
+    if not settings.gives("end_time"):
         report.notes.append(f"end_time is not set: {settings['end_time']:g}")
     if particles != "nodes" and settings["step_option"] == _NEAREST_DISTANCE and len(chosen) > 1:
         report.notes.append("step_option 2 takes the nearest particles of all bodies: touching bodies shorten the step")
@@ -86,28 +83,24 @@ def _part_number(model: Model, asked: int | str) -> int:
 
 def _materials_of(model: Model, chosen: list[int], settings: Settings) -> dict[int, dict[str, Any]]:
     """The settings of each part's material, by name or number; all mismatches are faults of the settings."""
-    faults = settings.faults()
     names = {key for number, part in model.parts.items() for key in (part.name, str(number)) if key}
     for group in ("materials", "contact_laws"):
         for name in settings[group]:
             if name not in names:
-                faults.add_at(settings.place(group, name), f"{group} of a part that the mesh does not have", name,
-                           "one of " + ", ".join(sorted(names)))  # fmt: skip
+                expected = "one of " + ", ".join(sorted(names))
+                settings.fault((group, name), f"{group} of a part that the mesh does not have", name, expected)
     data: dict[int, dict[str, Any]] = {}
     for number in chosen:
         part = model.parts[number]
         found = settings["materials"].get(part.name) or settings["materials"].get(str(number))
         if found is None:
             name = part.name or str(number)
-            faults.add_at(
-                settings.place("materials"),
-                "a part has no material",
-                name,
-                f"materials: {{{name}: {{law: elastic, ...}}}}",
+            settings.fault(
+                ("materials",), "a part has no material", name, f"materials: {{{name}: {{law: elastic, ...}}}}"
             )
         else:
             data[number] = found
-    faults.stop()
+    settings.stop()
     return data
 
 
@@ -155,15 +148,14 @@ def _control(target: Model, settings: Settings, dimension: int) -> ParticleContr
     if control.friction is not None:
         control.dialect = "2019-10"
     if control.contact:
-        faults = settings.faults()
         for material in target.materials.values():
             law = laws.get(material.name) or laws.get(material.name.removeprefix("part "))
             if law is None:
-                faults.add_at(settings.place("contact"), "a part has no contact law", material.name,
-                           f"contact_laws: {{{material.name}: {{strength: K, exponent: n}}}}")  # fmt: skip
+                expected = f"contact_laws: {{{material.name}: {{strength: K, exponent: n}}}}"
+                settings.fault(("contact",), "a part has no contact law", material.name, expected)
             else:
                 control.contact_laws.append(law)
-        faults.stop()
+        settings.stop()
     return control
 
 

@@ -6,17 +6,15 @@
 from __future__ import annotations
 
 import copy
-import difflib
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from zrno.translators.text import Faults, read_bytes
-from zrno.translators.yaml_marks import Node, compose
-
-Key = tuple[str, ...]
+from zrno.translators import yaml_marks
+from zrno.translators.text import Faults
+from zrno.translators.yaml_marks import Location, Marked, Place, did_you_mean, dotted
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,11 +49,13 @@ def _number(least: float = -math.inf, *, above: bool = False, optional: bool = F
                 value = float(value)
             except ValueError:
                 value = None
-        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        try:
+            number = math.nan if isinstance(value, bool) or not isinstance(value, int | float) else float(value)
+        except OverflowError:  # an integer of more than 308 digits
+            number = math.inf
+        if not math.isfinite(number) or number < least or (above and number == least):
             raise ValueError(f"a number{bound}")
-        if value < least or (above and value == least):
-            raise ValueError(f"a number{bound}")
-        return float(value)
+        return number
 
     return parse
 
@@ -188,44 +188,58 @@ TABLE: tuple[Setting | Group, ...] = (
 
 @dataclass(slots=True)
 class Settings:
-    """Settings after defaults. values: by key, groups as dicts; given: the keys that were set, with their places."""
+    """Settings after defaults. values: by key, groups as dicts; document: what was set, with places."""
 
-    path: str
     values: dict[str, Any]
-    given: dict[Key, tuple[int, int]] = field(default_factory=dict)
+    document: Marked
 
     def __getitem__(self, key: str) -> Any:
         return self.values[key]
 
-    def faults(self) -> Faults:
-        """A collector of faults of this file."""
-        return Faults(self.path)
+    def gives(self, *key: str) -> bool:
+        """Whether a key was set."""
+        return key in self.document.keys
 
-    def place(self, *key: str) -> tuple[int, int]:
-        """Line and column of a key, or of the nearest above it."""
-        while key and key not in self.given:
-            key = key[:-1]
-        return self.given.get(key, (1, 1))
+    def place(self, *key: str, value: bool = False) -> Place:
+        """Where a key or its value was set, or the nearest above it."""
+        return self.document.place(key, key=not value)
+
+    def fault(self, key: Location, message: str, text: object, expected: str) -> None:
+        """Note a fault at a key or the nearest above it."""
+        self.document.fault(key, message, expected, text=str(text), key=True)
+
+    def stop(self) -> None:
+        """Raise InputError when there are faults."""
+        self.document.stop()
 
 
-def load(path: Path | str | None = None, *, overrides: Mapping[str, Any] | None = None) -> Settings:
+def load(
+    path: Path | str | None = None,
+    *,
+    overrides: Mapping[str, Any] | None = None,
+    places: Mapping[str, tuple[Place, Place]] | None = None,
+) -> Settings:
     """Read settings; without a file, the defaults.
 
-    overrides: values by dotted key ("materials.plate.E"), stronger than the file's. Raises InputError with every fault.
+    overrides: values by dotted key ("materials.plate.E"), stronger than the file's. places: where the key and the value
+    of an override stand; that of "" is for faults of settings that are given nowhere. Raises InputError with every
+    fault.
     """
-    settings = Settings("settings" if path is None else str(path), defaults())
-    faults = settings.faults()
-    if path is not None:
-        tree = compose(read_bytes(path), faults)
-        if tree is not None:
-            _take(TABLE, tree, (), settings.values, settings, faults)
-    for dotted, value in (overrides or {}).items():
-        nested: Any = value
-        for word in reversed(dotted.split(".")):
-            nested = Node({word: (Node(nested) if not isinstance(nested, Node) else nested, (1, 1))})
-        _take(TABLE, nested, (), settings.values, settings, faults)
-    _check(settings, faults)
-    faults.stop()
+    said = str(path or "--settings")
+    document = Marked(said, {}, Faults(said)) if path is None else yaml_marks.load(path)
+    if document.data is None:
+        document.data = {}
+    settings = Settings(defaults(), document)
+    where = places or {}
+    if path is None and "" in where:
+        document.values[()] = where[""][1]
+    if isinstance(document.data, dict):
+        for name, value in (overrides or {}).items():
+            key, place = where.get(name, (Place(said, 1, 1, name), Place(said, 1, 1, str(value))))
+            document.override(tuple(name.split(".")), value, place, key)
+    _take(TABLE, document.data, (), settings.values, document)
+    _check(settings)
+    settings.stop()
     return settings
 
 
@@ -270,76 +284,72 @@ def _yaml(value: Any) -> str:
 
 
 def _take(
-    table: tuple[Setting | Group, ...],
-    node: Node,
-    above: Key,
-    values: dict[str, Any],
-    settings: Settings,
-    faults: Faults,
+    table: tuple[Setting | Group, ...], data: Any, above: Location, values: dict[str, Any], document: Marked
 ) -> None:
     """Values of a mapping into `values`, against the table."""
-    if not isinstance(node.value, dict):
-        faults.add_at(node.place, f"{'.'.join(above) or 'the file'} is not a mapping", str(node.value), "key: value")
+    if not isinstance(data, dict):
+        document.fault(
+            above, f"{dotted(above) or 'the file'} is not a mapping", "key: value", text=_said(document, above, data)
+        )
         return
     known = {item.key: item for item in table}
-    for key, (below, place) in node.value.items():
-        path = (*above, key)
+    for key, value in data.items():
+        location = (*above, key)
         item = known.get(key)
         if item is None:
-            near = difflib.get_close_matches(key, known, 1)
-            expected = f"{near[0]}?" if near else "one of " + ", ".join(known)
-            faults.add_at(place, f"unknown key {'.'.join(path)}", key, expected)
-            continue
-        settings.given[path] = place
-        if isinstance(item, Setting):
+            document.fault(location, f"unknown key {dotted(location)}", did_you_mean(key, known), text=key, key=True)
+        elif isinstance(item, Setting):
             try:
-                values[key] = item.parse(below.value)
+                values[key] = item.parse(value)
             except ValueError as error:
-                said = "null" if below.value is None else str(below.value)
-                faults.add_at(below.place, f"{'.'.join(path)} is not what it should be", said, str(error))
+                message = f"{dotted(location)} is not what it should be"
+                document.fault(location, message, str(error), text=_said(document, location, value))
         elif not item.named:
-            _take(item.items, below, path, values[key], settings, faults)
-        elif not isinstance(below.value, dict):
-            faults.add_at(
-                below.place, f"{key} is not a mapping", str(below.value), "the name of a part, and its values below"
-            )
+            _take(item.items, value, location, values[key], document)
+        elif not isinstance(value, dict):
+            said, expected = _said(document, location, value), "the name of a part, and its values below"
+            document.fault(location, f"{key} is not a mapping", expected, text=said)
         else:
-            for name, (entry, at) in below.value.items():
-                settings.given[(*path, name)] = at
+            for name, entry in value.items():
                 own = values[key].setdefault(name, _defaults_of(item))
-                _take(item.items, entry, (*path, name), own, settings, faults)
+                _take(item.items, entry, (*location, name), own, document)
 
 
-def _check(settings: Settings, faults: Faults) -> None:
+def _said(document: Marked, location: Location, value: Any) -> str:
+    """The text of a value, as it stands in the file where it is one word."""
+    return document.place(location).text or ("null" if value is None else str(value))
+
+
+def _check(settings: Settings) -> None:
     """What single keys cannot show."""
-
-    def wrong(key: Key, message: str, said: object, expected: str) -> None:
-        faults.add_at(settings.place(*key), message, str(said), expected)
-
     friction = settings["friction"]
     static, kinetic = friction["static"], friction["kinetic"]
     if (static is None) != (kinetic is None):
         missing = "static" if static is None else "kinetic"
-        wrong(("friction",), f"friction.{missing} is missing", "null", "static and kinetic")
+        settings.fault(("friction",), f"friction.{missing} is missing", "null", "static and kinetic")
     elif static is not None and kinetic > static:
-        wrong(("friction", "kinetic"), "friction.kinetic is above friction.static", kinetic, f"at most {static:g}")
-    for name, material in settings["materials"].items():
-        at = ("materials", name)
-        for key in ("density", "E", "nu"):
-            if (*at, key) not in settings.given:
-                wrong(at, f"materials.{name}.{key} is missing", name, f"a value of {key}")
-        if material["nu"] >= 0.5:
-            wrong((*at, "nu"), f"materials.{name}.nu is too large", material["nu"], "less than 0.5")
-        if material["beta"] > 1:
-            wrong((*at, "beta"), f"materials.{name}.beta is too large", material["beta"], "0 to 1")
-        if material["law"] == "von_mises":
-            if material["yield_stress"] <= 0:
-                wrong(
-                    (*at, "yield_stress"),
-                    f"materials.{name}.yield_stress is not positive",
-                    material["yield_stress"],
-                    "a stress",
-                )
-            slope = material["tangent_modulus"]
-            if slope >= material["E"]:
-                wrong((*at, "tangent_modulus"), f"materials.{name}.tangent_modulus is too large", slope, "less than E")
+        settings.fault(
+            ("friction", "kinetic"), "friction.kinetic is above friction.static", kinetic, f"at most {static:g}"
+        )
+    for name in settings["materials"]:
+        _check_material(settings, name)
+
+
+def _check_material(settings: Settings, name: str) -> None:
+    material = settings["materials"][name]
+
+    def wrong(key: str, message: str, expected: str) -> None:
+        settings.fault(("materials", name, key), f"materials.{name}.{key} is {message}", material[key], expected)
+
+    for key in ("density", "E", "nu"):
+        if not settings.gives("materials", name, key):
+            settings.fault(("materials", name), f"materials.{name}.{key} is missing", name, f"a value of {key}")
+    if material["nu"] >= 0.5:
+        wrong("nu", "too large", "less than 0.5")
+    if material["beta"] > 1:
+        wrong("beta", "too large", "0 to 1")
+    if material["law"] == "von_mises":
+        if material["yield_stress"] <= 0:
+            wrong("yield_stress", "not positive", "a stress")
+        if material["tangent_modulus"] >= material["E"]:
+            wrong("tangent_modulus", "too large", "less than E")

@@ -189,6 +189,7 @@ class Block:
         self.layout = layout
         self._cards = cards
         self._first = first
+        self._faulty: set[tuple[int, str]] = set()
         numeric = [f for f in layout.fields.values() if f.kind != "a"]
         if count * len(numeric) < _FEW:
             self.values = {f.name: self._parse(f, range(count)) for f in numeric}
@@ -218,12 +219,22 @@ class Block:
         f = self.layout.fields[name]
         return self._cards.text(self._first + i)[f.start : f.end].strip()
 
-    def fault(self, i: int, name: str, message: str, expected: str = "") -> None:
-        """Note a fault in a field of card i."""
+    def place(self, name: str, i: int = 0) -> tuple[int, int]:
+        """Line and column of what a field of card i says; of its first column where it is blank."""
         f = self.layout.fields[name]
         raw = self._cards.text(self._first + i)[f.start : f.end]
-        column = f.start + 1 + (len(raw) - len(raw.lstrip()) if raw.strip() else 0)
-        self._cards.faults.add(self.line(i), column, message, raw.strip() or "blank", expected)
+        return self.line(i), f.start + 1 + (len(raw) - len(raw.lstrip()) if raw.strip() else 0)
+
+    def fault(self, i: int, name: str, message: str, expected: str = "") -> None:
+        """Note a fault in a field of card i, unless it has one: what is no number is not also out of range."""
+        if (i, name) in self._faulty:
+            return
+        self._faulty.add((i, name))
+        self._cards.faults.add(*self.place(name, i), message, self.text(name, i) or "blank", expected)
+
+    def sound(self, name: str, i: int = 0) -> bool:
+        """Whether a field of card i has no fault so far."""
+        return (i, name) not in self._faulty
 
     def check(self, name: str, good: NDArray[np.bool_] | bool, message: str, expected: str = "") -> None:
         """Note a fault at each card whose `good` is false."""
@@ -266,9 +277,17 @@ class Card:
         """The text of a field, without the blanks around it."""
         return self.block.text(name)
 
+    def place(self, name: str) -> tuple[int, int]:
+        """Line and column of what a field says."""
+        return self.block.place(name)
+
     def fault(self, name: str, message: str, expected: str = "") -> None:
         """Note a fault in a field."""
         self.block.fault(0, name, message, expected)
+
+    def sound(self, name: str) -> bool:
+        """Whether a field has no fault so far; also where the card has no such field."""
+        return self.block.sound(name)
 
     def check(self, name: str, good: bool, message: str, expected: str = "") -> None:
         """Note a fault in a field unless `good`."""

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from zrno.pipelines.drafts import drafts
+from zrno.pipelines.scene import Scene
 from zrno.solvers.frame import Frame
 
 
@@ -86,3 +89,16 @@ def drive() -> Any:
             observer.finish(solver)
 
     return run
+
+
+@pytest.fixture
+def make_decks() -> Any:
+    """make_decks(scene, folder): every deck that a scene makes, in its place; what `convert` returns of each."""
+
+    def make(scene: Scene, folder: Path) -> list[dict[str, Any]]:
+        with drafts(scene, folder, publishing=True) as made:
+            for draft in made:
+                draft.publish()
+        return [draft.result for draft in made]
+
+    return make

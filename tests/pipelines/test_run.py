@@ -222,6 +222,15 @@ def test_set_replaces_a_key_of_a_scene(tmp_path: Path) -> None:
     assert set(result.manifest["inputs"]) == {str(scene), str(tmp_path / "impact.mcm")}
 
 
+def test_a_picture_that_cannot_be_drawn_is_a_warning_of_a_run_that_is_done(tmp_path: Path) -> None:
+    deck(tmp_path / "impact.mcm", end_time=0.1)
+    (tmp_path / "scene.yaml").write_text("decks: [impact.mcm]\nrender: [{time: 99}]\n")
+    result = run([tmp_path / "scene.yaml"], output=tmp_path / "out")
+    assert (result["status"], result["pictures"]) == ("done", [])
+    assert result["warnings"] == ["render.0 is not drawn: no frame at time 99; there are 2 from 0 to 0.1"]
+    assert result["warnings"][0] in (tmp_path / "out" / "run.log").read_text()
+
+
 def test_what_making_a_deck_lost_is_in_the_log_and_among_the_warnings(tmp_path: Path) -> None:
     (tmp_path / "squares.geo").write_text(
         'SetFactory("OpenCASCADE"); Rectangle(1) = {0, 0, 0, 1, 1}; Rectangle(2) = {1, 0, 0, 1, 1};\n'

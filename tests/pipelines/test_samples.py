@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from zrno.pipelines import samples, scene
-from zrno.pipelines.convert import make_decks
-from zrno.translators import Model, read
+from zrno.pipelines.drafts import drafts
+from zrno.translators import Model
 
 SCENES = ["scene", "elastic", "text_10ms", "aluminium", "potential"]
 
@@ -30,8 +30,8 @@ def test_a_copy_has_every_file_and_overwrites_nothing(tmp_path: Path) -> None:
 
 def _deck(folder: Path, name: str, **options: object) -> Model:
     loaded = scene.load(folder / f"{name}.yaml", {key.replace("__", "."): value for key, value in options.items()})
-    make_decks(loaded, folder)
-    return read(folder / loaded.decks[0])
+    with drafts(loaded, folder, publishing=False) as made:
+        return next(draft.read() for draft in made if draft.target == folder / loaded.decks[0])
 
 
 @pytest.fixture

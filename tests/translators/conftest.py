@@ -15,7 +15,7 @@ from zrno.translators.text import InputError
 
 def _same(a: Any, b: Any) -> bool:
     if is_dataclass(a):
-        names = [f.name for f in fields(a) if f.name not in ("source", "warnings")]
+        names = [f.name for f in fields(a) if f.compare and f.name not in ("source", "warnings")]
         return type(a) is type(b) and all(_same(getattr(a, name), getattr(b, name)) for name in names)
     if isinstance(a, np.ndarray):
         return isinstance(b, np.ndarray) and a.dtype == b.dtype and np.array_equal(a, b)

@@ -11,6 +11,13 @@ from zrno.translators.mcm.sections import Sections
 from zrno.translators.model import Material, Model, ParticleControl, Particles, Source
 from zrno.translators.text import Card, Cards, Fault, InputError, read_bytes
 
+# What decides which cards follow, right after the control cards and after the particles.
+_DECIDE_MATERIALS = ("axopt", "nummat", "np", "contact_option")
+_DECIDE_SECTIONS = (
+    "thnode", "transducers", "init_v", "massopt", "init_h", "init_rhoe", "contact", "symmetry", "nthpx", "nthpy",
+    "nthpz",
+)  # fmt: skip
+
 
 def read(path: Path | str, *, paired: bool = False) -> Model:
     """Read a deck.
@@ -26,9 +33,10 @@ def read(path: Path | str, *, paired: bool = False) -> Model:
     title = cards.card(layouts.TITLE, "the title card")
     version = title["version"]
     if version not in (1, 2):
-        cards.faults.found.clear()  # not even a number: this says it better
-        title.fault("version", "not an .mcm deck that can be read", "version 1 or 2 in columns 79-80 of the title")
-        cards.faults.stop()
+        said, expected = title.text("version") or "blank", "version 1 or 2 in columns 79-80 of the title"
+        raise InputError(
+            [Fault(str(path), *title.place("version"), "not an .mcm deck that can be read", said, expected)]
+        )
     deck = _Deck(path, cards, version, paired)
     deck.model.title = title.text("title")
     return deck.read()
@@ -43,6 +51,7 @@ class _Deck:
         self.version = version
         self.paired = paired
         self.control = ParticleControl()
+        self.control_cards: list[Card] = []
         self.model = Model(format="mcm", version=str(version), particle_control=self.control)
 
     def read(self) -> Model:
@@ -50,13 +59,17 @@ class _Deck:
         first, options, interpolation = control["first"], control["options"], control["interpolation"]
         model, dimension = self.model, self.control.dimension
         model.dimension = dimension
+        # What cannot be read may be asked for: a material that leaves it to its particles is then not a second fault.
         extra: dict[str, bool] = {
-            name: bool(control[name][name]) for name in ("massopt", "init_h", "init_rhoe") if name in control
+            name: bool(control[name][name]) or not control[name].sound(name)
+            for name in ("massopt", "init_h", "init_rhoe")
+            if name in control
         }
         for _ in range(first["nummat"]):
             self._material(per_particle_mass=extra["massopt"], per_particle_h=extra["init_h"])
         particles = self._particles(first["np"])
         model.particles = particles
+        self._stop_unless_sound(_DECIDE_SECTIONS)
         if any(extra.values()):
             self._extra(particles, extra)
         sections = Sections(self.cards, model, self.control, self.paired)
@@ -91,9 +104,11 @@ class _Deck:
         rows = layouts.CONTROL if self.version == 2 else layouts.CONTROL_VERSION_1
         read = [self.cards.card(row, f"control card {i}") for i, row in enumerate(rows, 1)]
         card = {name: read[i] for name, i in where.items()}
+        self.control_cards += read
         if self.version == 2:
             self._card_7()
         first, time, history, options = card["first"], card["time"], card["history"], card["options"]
+        interpolation = card["interpolation"]
         self._check_control(first, time, history, options, card["h_opt"])
         c = self.control
         c.dimension = first["axopt"]
@@ -102,13 +117,19 @@ class _Deck:
         c.output_interval, c.state_option = history["stpltime"], history["state_opt"]
         c.history_interval = history["thpltime"]
         c.contact, c.step_option, c.velocity_option = options["contact"], options["tcrit"], options["veloc_opt"]
-        c.h_option, c.max_neighbours = card["h_opt"]["h_opt"], card["interpolation"]["maxnbr"]
+        c.h_option, c.max_neighbours = card["h_opt"]["h_opt"], interpolation["maxnbr"]
         if self.version == 2:
             c.max_particles = first["max_np"] if first["max_np"] > first["np"] else 0
             c.dynamic_relaxation = time["drelax"]
             c.status_interval, c.restart_interval = history["status"], history["restart"]
             c.run_restart = history["run_restart"]
             c.keep_files = card["keep"]["keep_files"]
+        where_asked = {
+            "discretisation": (first, "disctype"), "h_option": (card["h_opt"], "h_opt"),
+            "kernel": (interpolation, "kernel"), "velocity_option": (options, "veloc_opt"),
+            "planes": (options, "symmetry"), "dynamic_relaxation": (time, "drelax"),
+        }  # fmt: skip
+        c.places |= {field: at.place(name) for field, (at, name) in where_asked.items() if name in at.block.values}
         return card
 
     def _check_control(self, first: Card, time: Card, history: Card, options: Card, h_opt: Card) -> None:
@@ -127,8 +148,12 @@ class _Deck:
             options.check("contact", options["contact"] != 1, "version 1 has no contact cards", "0 (kernel contact)")
         options.check("tcrit", options["tcrit"] in (0, 1, 2), "no such time step option", "0, 1 or 2")
         h_opt.check("h_opt", h_opt["h_opt"] in (0, 1, 2), "no such smoothing length option", "0, 1 or 2")
-        if first["nummat"] <= 0 or first["np"] <= 0 or first["axopt"] not in (1, 2, 3):
-            self.cards.faults.stop()  # nothing after this could be read at its place
+        self._stop_unless_sound(_DECIDE_MATERIALS)
+
+    def _stop_unless_sound(self, names: tuple[str, ...]) -> None:
+        """Raise what was found where one of these fields is at fault: nothing after could be read at its place."""
+        if not all(card.sound(name) for card in self.control_cards for name in names):
+            self.cards.faults.stop()
 
     def _card_7(self) -> None:
         text = self.cards.peek(layouts.CARD_7_TEXT, 1)
@@ -138,14 +163,17 @@ class _Deck:
             c.dialect = "2019-08"
             friction = self.cards.card(layouts.FRICTION, "control card 7")
             c.friction = (friction["static_friction"], friction["dynamic_friction"])
+            c.places["friction"] = friction.place("static_friction")
             return
         options = self.cards.card(layouts.CARD_7_OPTIONS, "control card 7")
+        self.control_cards.append(options)
         if not said:
             return
         c.dialect = "2019-10"
         for name in ("birth_death", "plane_particle"):
             options.check(name, options[name] == 0, f"{name} is not supported", "0")
         kind = options["contact_option"]
+        c.places |= dict.fromkeys(("friction", "fluid_friction"), options.place("contact_option"))
         options.check(
             "contact_option", kind in (0, 1, 2), "no such contact option", "0, 1 (friction) or 2 (fluid friction)"
         )
@@ -182,6 +210,8 @@ class _Deck:
             source=Source(self.path, a.line),
         )
         self.model.materials[number] = material
+        if not a.sound("eos"):
+            self.cards.faults.stop()  # cards of an equation of state may follow, or none
         if a["eos"]:
             self.cards.card(layouts.MATERIAL_TITLE, f"equation of state of material {number}")
             self.cards.block(layouts.PROPERTIES, layouts.EOS_CARDS.get(a["eos"], 1), "equation of state card")

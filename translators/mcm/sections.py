@@ -57,6 +57,8 @@ class Sections:
         velocity[:, self.control.dimension :] = 0.0
         if ids[0] != 1:
             block.fault(0, "number", "the velocity cards do not begin with particle 1", "1")
+            if ids[-1] < count:
+                cards.faults.stop()  # where the section ends is not known
             return
         past = np.flatnonzero(ids > count)
         if len(past) and not self.paired:
@@ -71,7 +73,7 @@ class Sections:
         if last < count:
             following = cards.card(layouts.VELOCITY, f"the velocity cards up to particle {count}")
             following.fault("number", "velocity card out of order", f"a particle number from {last + 1} to {count}")
-            return
+            cards.faults.stop()  # where the section ends is not known
         jump = np.flatnonzero((np.diff(ids) > 1) & (velocity[1:] != velocity[:-1]).any(axis=1)) + 1
         for i in jump[:20].tolist():
             block.fault(

@@ -1,0 +1,122 @@
+"""What a run needs before its first step: read, made, checked. Until all of it is sound, nothing is written."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from zrno.pipelines import options as command_options
+from zrno.pipelines import scene as scenes
+from zrno.pipelines.checkpoint import load_latest
+from zrno.pipelines.drafts import Draft, drafts
+from zrno.pipelines.manifest import digests
+from zrno.pipelines.quantities import field_names
+from zrno.pipelines.scene import Scene
+from zrno.translators import read
+from zrno.translators.model import Model
+from zrno.translators.text import Fault, InputError
+from zrno.translators.yaml_marks import Place, did_you_mean
+
+if TYPE_CHECKING:
+    from zrno.solvers.sph import Solver
+
+
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """A run that can begin. deck: at its place, its SHA-256 in digest; made: what `convert` returns of each deck made.
+
+    state: the checkpoint that the solver stands at, None at the start; started: when the deck had been read
+    (`time.perf_counter`).
+    """
+
+    scene: Scene | None
+    deck: Path
+    digest: dict[str, str]
+    model: Model
+    made: list[dict[str, Any]]
+    solver: Solver
+    state: Mapping[str, Any] | None
+    started: float
+
+
+def prepare(
+    paths: Sequence[Path],
+    chosen: command_options.Options,
+    directory: Path,
+    *,
+    threads: int | None = None,
+    resume: bool = False,
+) -> Prepared:
+    """Read the inputs of a run and build its solver; then make the result folder, and put decks in their places.
+
+    Raises InputError for bad input, ValueError for a checkpoint that does not fit.
+    """
+    scene, decks = _decks(paths, chosen)
+    refuse_what_is_not_run(decks)
+    if directory.exists() and not directory.is_dir():
+        raise InputError([Fault(str(directory), 1, 1, "not a folder", expected="a folder for the results")])
+    made: Sequence[Draft]
+    with drafts(scene, paths[0].parent, publishing=True) if scene else nullcontext(()) as made:
+        deck = decks[0]
+        draft = next((draft for draft in made if draft.target == deck), None)
+        model = draft.read() if draft else read(deck)
+        started = time.perf_counter()
+        places = draft.places(model) if draft else {}
+        if scene is None:
+            places = command_options.apply(chosen.settings, model)
+        digest = {str(deck): next(iter(digests([draft.path if draft else deck]).values()))}
+        solver = _solver(model, deck, places, original=chosen.run.get("compat") == "original", threads=threads)
+        state = load_latest(directory, inputs=digest) if resume else None
+        if state is not None:
+            solver.restore(dict(state))
+        if scene is not None:
+            _check_pictures(scene, solver)
+        directory.mkdir(parents=True, exist_ok=True)
+        for draft in made:
+            draft.publish()
+        return Prepared(scene, deck, digest, model, [d.result for d in made], solver, state, started)
+
+
+def refuse_what_is_not_run(decks: Sequence[Path]) -> None:
+    """Refuse what later versions will run. Raises InputError."""
+    for deck in decks:
+        if deck.suffix.lower() == ".dat":
+            raise InputError([Fault(str(deck), 1, 1, "finite elements are not run yet", "", "a particle deck .mcm")])
+    if len(decks) != 1:
+        raise InputError([Fault(str(decks[-1]), 1, 1, "one run takes one particle deck", "", "one .mcm or one scene")])
+
+
+def _decks(paths: Sequence[Path], chosen: command_options.Options) -> tuple[Scene | None, list[Path]]:
+    """The scene, if one was given, and the decks."""
+    if len(paths) == 1 and paths[0].suffix.lower() in scenes.SUFFIXES:
+        scene = scenes.load(paths[0], chosen.scene)
+        return scene, [paths[0].parent / deck for deck in scene.decks]
+    unused = [key for key in chosen.scene if key not in chosen.settings]
+    if unused:
+        raise InputError([Fault("--set", 1, 1, f"{key} is for scenes", key, "a scene") for key in unused])
+    return None, list(paths)
+
+
+def _solver(model: Model, deck: Path, places: Mapping[str, Place], *, original: bool, threads: int | None) -> Solver:
+    from zrno.pipelines.build import particle_problem
+    from zrno.solvers.sph import Solver
+
+    return Solver(particle_problem(model, str(deck), places=places, original=original), threads=threads)
+
+
+def _check_pictures(scene: Scene, solver: Solver) -> None:
+    """The fields that a scene's pictures show are fields of this solver's frames. Raises InputError."""
+    if not scene.render:
+        return
+    names = field_names(solver.frame().particles)
+    faults = [
+        scene.fault(("render", i, "field"), f"render.{i}.field: no such field", did_you_mean(picture.field, names))
+        for i, picture in enumerate(scene.render)
+        if picture.field not in names
+    ]
+    if faults:
+        raise InputError(faults)

@@ -1,0 +1,95 @@
+"""`zrno check`: what a run would refuse is a warning of a sound deck; a scene is checked with the decks it makes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from zrno.pipelines import samples
+from zrno.pipelines.check import check, check_text, fault_lines
+
+SCENE = "meshes: [{source: plate.msh, target: plate.mcm, settings: plate.yaml, spacing: 0.25}]\ndecks: [plate.mcm]\n"
+SETTINGS = "end_time: 0.1\nmaterials:\n  plate: {density: 2, E: 10, nu: 0.3}\n"
+
+
+@pytest.fixture
+def scene(tmp_path: Path, plate_msh: str) -> Path:
+    (tmp_path / "plate.msh").write_text(plate_msh)
+    (tmp_path / "plate.yaml").write_text(SETTINGS)
+    (tmp_path / "scene.yaml").write_text(SCENE)
+    return tmp_path / "scene.yaml"
+
+
+def _short(folder: Path, text: str) -> list[str]:
+    return text.replace(f"{folder}/", "").splitlines()
+
+
+def test_the_decks_that_a_scene_makes_are_checked_and_nothing_is_written(scene: Path) -> None:
+    rows = check([scene])
+    assert fault_lines(rows) == []
+    assert _short(scene.parent, check_text(rows)) == [
+        "scene.yaml: ok",
+        "plate.mcm: ok",
+        "  warning: dropped: 1 line2 elements - of lower dimension than the parts: no particles are made of them",
+        "  warning: dropped: 1 node sets - an .mcm deck has none: edge",
+    ]
+    assert sorted(path.name for path in scene.parent.iterdir()) == ["plate.msh", "plate.yaml", "scene.yaml"]
+
+
+def test_what_cannot_be_run_yet_is_a_warning_where_it_was_asked(scene: Path) -> None:
+    (scene.parent / "plate.yaml").write_text(SETTINGS + "h_option: 1\n")
+    rows = check([scene])
+    assert fault_lines(rows) == []
+    warning = "plate.yaml:4:11: cannot be run yet: a smoothing length that changes is not computed yet (h_opt 1)"
+    assert f"  warning: {warning}" in _short(scene.parent, check_text(rows))
+
+
+def test_a_deck_that_cannot_be_run_yet_is_sound(scene: Path) -> None:
+    from zrno.pipelines.convert import convert
+
+    deck = scene.parent / "deck.mcm"
+    settings = scene.parent / "plate.yaml"
+    convert([scene.parent / "plate.msh"], deck, spacing=0.5, settings_file=settings, overrides={"xsph": True})
+    rows = check([deck])
+    assert fault_lines(rows) == []
+    line = next(i for i, text in enumerate(deck.read_text().splitlines()) if "veloc_opt" in text) + 2
+    assert _short(scene.parent, check_text(rows)) == [
+        "deck.mcm: ok",
+        f"  warning: deck.mcm:{line}:15: cannot be run yet: XSPH is not computed yet (veloc_opt 1)",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new", "said"),
+    [
+        ("plate.msh", "4 0 1 0", "4 0 x 0", "plate.msh:14:5: error: "),
+        ("plate.yaml", "E: 10", "E: ten", "plate.yaml:3:26: error: materials.plate.E is not what it should be (ten)"),
+        ("plate.yaml", "  plate", "  wing", "plate.yaml:2:1: error: a part has no material (plate)"),
+        ("scene.yaml", "spacing", "spacng", "scene.yaml:1:71: error: unknown key meshes.0.spacng"),
+        ("scene.yaml", "0.25", "0.25, part: [8]", "scene.yaml:1:10: error: the mesh has no part 8; it has: 7 plate"),
+        ("scene.yaml", "0.25", "0.25, particles: shells, set: {dimension: 3}", "scene.yaml:1:111: error: the mesh"),
+    ],
+)
+def test_faults_of_meshes_settings_and_scene_have_their_places(
+    scene: Path, file: str, old: str, new: str, said: str
+) -> None:
+    path = scene.parent / file
+    text = path.read_text()
+    assert text.count(old) >= 1
+    path.write_text(text.replace(old, new, 1))
+    lines = _short(scene.parent, "\n".join(fault_lines(check([scene]))))
+    assert lines[0].startswith(said), lines
+
+
+def test_a_pair_is_said_not_to_run_yet(scene: Path) -> None:
+    (scene.parent / "plate.dat").write_text("C a deck\n")
+    scene.write_text(SCENE.replace("[plate.mcm]", "[plate.dat, plate.mcm]"))
+    rows = check([scene])
+    assert "cannot be run yet: finite elements are not run yet" in rows[0]["warnings"][0]
+
+
+def test_samples_are_sound_without_a_warning(tmp_path: Path) -> None:
+    folder = samples.copy("two_cylinders", tmp_path / "cylinders")
+    rows = check([folder / "scene.yaml"])
+    assert _short(folder, check_text(rows)) == ["scene.yaml: ok", "cylinders.mcm: ok"]
