@@ -25,16 +25,18 @@ def convert(
     numbers: Mapping[str, float] | None = None,
     dialect: str | None = None,
     strict: bool = False,
+    allow_outside: bool = False,
 ) -> dict[str, Any]:
     """Translate files; returns the keys of `zrno convert --json` and `notes`.
 
     A mesh becomes particles where the target is a particle deck: particles, spacing, parts, settings_file and overrides
     (settings by dotted key) say how. numbers: parameters of a .geo script. dialect: of the .mcm that is written.
-    strict: what the target cannot say is an error. Raises InputError and ValueError; nothing is written then.
+    strict: what the target cannot say is an error. allow_outside: files that a source includes may stand outside its
+    folder. Raises InputError and ValueError; nothing is written then.
     """
     return translate(
         sources, target, particles=particles, spacing=spacing, parts=parts, settings_file=settings_file,
-        overrides=overrides, numbers=numbers, dialect=dialect, strict=strict,
+        overrides=overrides, numbers=numbers, dialect=dialect, strict=strict, allow_outside=allow_outside,
     )[0]  # fmt: skip
 
 
@@ -51,9 +53,12 @@ def translate(
     numbers: Mapping[str, float] | None = None,
     dialect: str | None = None,
     strict: bool = False,
+    allow_outside: bool = False,
 ) -> tuple[dict[str, Any], settings.Settings | None]:
     """What `convert` does, and the settings that particles were made by. places: of the overrides (`settings.load`)."""
-    model = merge([_read(source, numbers) for source in sources])
+    model = merge([_read(source, numbers, allow_outside=allow_outside) for source in sources])
+    if model.incomplete:
+        raise ValueError("nothing can be made of a source that lacks what it names: " + "; ".join(model.incomplete[:5]))
     source = model.summary()
     report = Report()
     if len(sources) > 1:
@@ -89,9 +94,9 @@ def report_text(result: Mapping[str, Any]) -> str:
     return "\n".join([*result["notes"], *losses(result, "approximated", "dropped")])
 
 
-def _read(path: Path, numbers: Mapping[str, float] | None) -> Model:
+def _read(path: Path, numbers: Mapping[str, float] | None, *, allow_outside: bool) -> Model:
     if not numbers:
-        return read(path)
+        return read(path, allow_outside=allow_outside)
     if path.suffix.lower() != ".geo":
         raise ValueError(f"{path}: numbers are parameters of a .geo script")
     from zrno.translators.gmsh.geo import read as read_geo

@@ -31,6 +31,7 @@ def merge(models: Sequence[Model]) -> Model:
         whole.parts |= {number + part: replace(p, id=number + part) for number, p in model.parts.items()}
         whole.node_sets += [replace(s, id=s.id + sets, nodes=s.nodes + nodes) for s in model.node_sets]
         whole.includes += model.includes
+        whole.incomplete += model.incomplete
         whole.blocks += [
             ElementBlock(block.kind, block.ids + elements, block.nodes + nodes, block.part + part)
             for block in model.blocks

@@ -43,13 +43,15 @@ def run(
     options: Mapping[str, Any] | None = None,
     quiet: bool = True,
     progress: bool = False,
+    allow_outside: bool = False,
 ) -> dict[str, Any]:
     """Run one particle deck or a scene; returns the keys of `zrno run --json`.
 
     output: result folder (default: the input's name and `_results`, in the working folder). threads: None for all, or
     one for few particles. until: stop at this simulated time. resume: go on from the newest checkpoint of the folder,
     if it has one. options: by dotted key, as `--set` takes them (`compat=original`, scene keys, settings). quiet: no
-    message on stderr; progress: a bar there.
+    message on stderr; progress: a bar there. allow_outside: files that a scene's meshes include may stand outside their
+    folders.
 
     Raises InputError for bad input (nothing is written then), `Diverged` for a run that cannot go on, KeyboardInterrupt
     after the checkpoint of an interrupted one.
@@ -59,7 +61,7 @@ def run(
         raise InputError([Fault("--until", 1, 1, "the run cannot end before it starts", str(until), "0 or more")])
     paths = [Path(p) for p in inputs]
     directory = Path(output) if output is not None else Path(f"{paths[0].stem}_results")
-    ready = prepare(paths, chosen, directory, threads=threads, resume=resume)
+    ready = prepare(paths, chosen, directory, threads=threads, resume=resume, allow_outside=allow_outside)
     scene, deck, model, solver, state = ready.scene, ready.deck, ready.model, ready.solver, ready.state
 
     from zrno.solvers.jit import compile_seconds

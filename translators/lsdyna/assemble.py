@@ -32,6 +32,8 @@ def nodes(deck: Deck) -> None:
         model.node_ids = np.concatenate([run.ids for run in runs])
         model.xyz = np.concatenate([run.xyz for run in runs])
     for run in runs:
+        if np.isfinite(run.xyz).all():
+            continue
         bad = ~np.isfinite(run.xyz).all(axis=1)
         for i in np.flatnonzero(bad)[:20].tolist():
             deck.fault(run.block.file, int(run.rows[i]), 0, "a node's place is not finite", str(run.ids[i]))
@@ -123,6 +125,8 @@ def _check_twice(deck: Deck) -> None:
 
 def _check_zero(deck: Deck, run: ElementRun) -> None:
     """A fault for elements that lack one of the nodes that each of their shape has."""
+    if not len(run.nodes) or run.nodes.min() > 0:
+        return
     needed = {"solid": 4, "shell": 3, "beam": 2, "spring": 1, "point": 1}.get(run.shape, run.nodes.shape[1])
     for i in np.flatnonzero((run.nodes[:, :needed] <= 0).any(axis=1))[:20].tolist():
         deck.fault(run.block.file, int(run.rows[i]), 0, "an element has no number for one of its nodes",
@@ -271,7 +275,8 @@ def _parts(deck: Deck) -> None:
     model = deck.model
     for block in model.blocks:
         dimension = TABLE[block.kind].dimension
-        for number in np.unique(block.part).tolist():
+        same = len(block.part) and block.part.min() == block.part.max()
+        for number in [int(block.part[0])] if same else np.unique(block.part).tolist():
             if number == 0 and block.family == "mass":
                 continue
             part = model.parts.get(number)

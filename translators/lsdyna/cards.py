@@ -7,7 +7,10 @@ parameters, and cells that are odd, one by one.
 
 from __future__ import annotations
 
+import os
 import re
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -24,7 +27,10 @@ if TYPE_CHECKING:
     from zrno.translators.lsdyna.deck import Deck
 
 _FEW = 100_000  # numbers: below this Python parses them before the jitted kernels are loaded
-_ROWS_AT_A_TIME = 200_000
+_ROWS_AT_A_TIME = 50_000
+_MOST_THREADS = 8
+_MANY = 1000  # rows that take care: as many are looked at for commas all at once
+_NONE = np.empty(0, np.int64)
 _LARGEST = 2**62
 _EXACT = 2**53  # integers that a double holds
 _ITEM = re.compile(r"(\w+)(?:/([ia]?)(\d*))?(?:\*(\d+))?$")
@@ -207,6 +213,15 @@ class Card:
         return int(number)
 
 
+def in_threads(do: Callable[[int], Ints], starts: range) -> list[Ints]:
+    """do(start) of each start, in as many threads as there are processors: kernels and numpy let each other run."""
+    threads = min(len(os.sched_getaffinity(0)), len(starts), _MOST_THREADS)
+    if threads < 2:
+        return [do(start) for start in starts]
+    with ThreadPoolExecutor(threads) as pool:
+        return list(pool.map(do, starts))
+
+
 class Table:
     """Many cards of one layout. values: an array a name, (n,), or (n, k) where the layout has k of it."""
 
@@ -219,13 +234,12 @@ class Table:
             kind = self.layout.kinds[name]
             self.values[name] = np.zeros(shape, np.int64 if kind == "i" else np.float64)
         if len(rows) * len(self.layout.fields) < _FEW:
-            odd = range(len(rows))
+            odd = np.arange(len(rows))
         else:
-            commas, references = self._holding(b","), self._holding(b"&<")
-            self._fixed(np.flatnonzero(~(commas | references)))
-            self._free(np.flatnonzero(commas & ~references))
-            odd = np.flatnonzero(references).tolist()
-        for i in odd:
+            odd = self._fixed()
+            if len(odd) > _MANY:
+                odd = self._free(odd)
+        for i in odd.tolist():
             self._one(i)
 
     def __getitem__(self, name: str) -> NDArray[Any]:
@@ -246,63 +260,55 @@ class Table:
         """Note a fault in a field of card i."""
         self.card(i).fault(name, message, expected, index)
 
-    def _holding(self, characters: bytes) -> NDArray[np.bool_]:
-        """Which rows hold one of some characters."""
-        holding = np.zeros(len(self.rows), bool)
-        file, rows = self.block.file, self.rows
-        low, high = int(file.starts[rows[0]]), int(file.ends[rows[-1]])
-        found = [c for c in characters if file.data.find(c, low, high) >= 0]
-        for start in range(0, len(rows) if found else 0, _ROWS_AT_A_TIME):
-            part = rows[start : start + _ROWS_AT_A_TIME]
-            first = int(file.starts[part[0]])
-            region = file.bytes[first : int(file.ends[part[-1]])]
-            places = first + np.flatnonzero(np.isin(region, np.array(found, np.uint8)))
-            row = np.searchsorted(file.starts[part], places, side="right") - 1
-            holding[start + row[places < file.ends[part][row]]] = True
-        return holding
+    def without_blank(self, name: str) -> Table:
+        """The table without the rows that are blank, which are looked for where a field is 0."""
+        zero = np.flatnonzero(self.values[name] == 0)
+        blank = [i for i in zero.tolist() if not self.block.file.text(int(self.rows[i])).strip()]
+        if blank:
+            self.rows = np.delete(self.rows, blank)
+            self.values = {key: np.delete(values, blank, axis=0) for key, values in self.values.items()}
+        return self
 
-    def _fixed(self, which: Ints) -> None:
-        """Rows of fixed columns."""
+    def _fixed(self) -> Ints:
+        """All rows as fixed columns; returns those with a cell that takes care: commas, parameters, odd numbers."""
         from zrno.translators import scan
 
         file = self.block.file
         numeric = [f for f in self.layout.fields if f.kind != "a"]
         columns = [(f.start, f.end, -1 if f.kind == "i" else 0) for f in numeric]
-        for start in range(0, len(which), _ROWS_AT_A_TIME):
-            part = which[start : start + _ROWS_AT_A_TIME]
-            lines = self.rows[part]
-            arrays, care = scan.fixed(file.bytes, file.starts[lines], file.ends[lines], columns)
-            self._put(numeric, arrays, part)
-            if care is not None:
-                for i in np.flatnonzero(care.any(axis=0)).tolist():
-                    self._one(int(part[i]))
 
-    def _free(self, which: Ints) -> None:
-        """Rows whose fields commas separate."""
+        def some(start: int) -> Ints:
+            lines = self.rows[start : start + _ROWS_AT_A_TIME]
+            arrays, care = scan.fixed(file.bytes, file.starts[lines], file.ends[lines], columns)
+            self._put(numeric, arrays, slice(start, start + len(lines)))
+            return _NONE if care is None else start + np.flatnonzero(care.any(axis=0))
+
+        return np.concatenate([_NONE, *in_threads(some, range(0, len(self.rows), _ROWS_AT_A_TIME))])
+
+    def _free(self, which: Ints) -> Ints:
+        """Rows whose fields commas separate; returns those among `which` that take care, or have no comma."""
         from zrno.translators import scan
 
         file, fields = self.block.file, self.layout.fields
         if any(f.kind == "a" for f in fields):
-            for i in which.tolist():
-                self._one(i)
-            return
-        for start in range(0, len(which), _ROWS_AT_A_TIME):
+            return which
+        whole = np.array([f.kind == "i" for f in fields])
+
+        def some(start: int) -> Ints:
             part = which[start : start + _ROWS_AT_A_TIME]
             lines = self.rows[part]
-            grid, _, care = scan.free(file.bytes, file.starts[lines], file.ends[lines], len(fields), only_commas=True)
-            whole = np.array([f.kind == "i" for f in fields])
+            grid, count, care = scan.free(file.bytes, file.starts[lines], file.ends[lines], len(fields), only_commas=True)
             numbers = np.where(np.isfinite(grid), grid, 0.5)
-            odd = (whole & ((numbers != np.rint(numbers)) | (abs(numbers) > _EXACT))).any(axis=1)
+            odd = (whole & ((numbers != np.rint(numbers)) | (abs(numbers) > _EXACT))).any(axis=1) | (count < 2)
             if care is not None:
                 odd |= care
             grid[odd] = 0.0
             self._put(list(fields), [c.astype(np.int64) if w else c for c, w in zip(grid.T, whole, strict=True)], part)
-            for i in part[odd].tolist():
-                self._one(i)
+            return part[odd]
 
-    def _put(self, fields: list[Field], arrays: list[NDArray[Any]], part: Ints) -> None:
-        # rows that follow each other are a slice: no copy of their places
-        place: Any = slice(int(part[0]), int(part[-1]) + 1) if part[-1] - part[0] + 1 == len(part) else part
+        return np.concatenate([_NONE, *in_threads(some, range(0, len(which), _ROWS_AT_A_TIME))])
+
+    def _put(self, fields: list[Field], arrays: list[NDArray[Any]], place: Any) -> None:
         for field, array in zip(fields, arrays, strict=True):
             target = self.values[field.name]
             if self.layout.sizes[field.name] == 1:

@@ -14,9 +14,10 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
-from zrno.translators.text import Ints, line_spans
+from zrno.translators.text import Ints
 
-_STAR, _DOLLAR, _BLANK = b"*$ "
+_STAR, _DOLLAR, _BLANK, _NEWLINE, _RETURN = b"*$ \n\r"
+_BYTES_AT_A_TIME = 1 << 20  # searched for the ends of lines: they stay in the cache
 _TAIL = 1000  # rows looked at together for blank ones at the end
 _ROWS_AT_A_TIME = 50_000
 _KEYWORD = re.compile(r"\*\s*([^\s,(]+)\s*(.*)")
@@ -37,25 +38,48 @@ class Widths(Enum):
 
 
 class File:
-    """A file's lines. shown: the path for messages; line numbers are from 0 here, from 1 in messages."""
+    """A file's lines. shown: the path for messages; line numbers are from 0 here, from 1 in messages.
 
-    def __init__(self, shown: str, data: bytes) -> None:
-        if data.startswith(b"\xef\xbb\xbf"):  # a mark that some editors put before UTF-8
+    bytes: all of it; starts, ends: (n,) first byte of each line and the byte past its last; first: (n,) the first byte,
+    a blank of an empty line; binary: whether a byte is 0.
+    """
+
+    def __init__(self, shown: str, data: NDArray[np.uint8]) -> None:
+        if data[:3].tobytes() == b"\xef\xbb\xbf":  # a mark that some editors put before UTF-8
             data = data[3:]
         self.shown = shown
-        self.data = data
-        self.bytes = np.frombuffer(data, np.uint8)
-        self.starts, self.ends = line_spans(data)
-        first = self.bytes[np.minimum(self.starts, max(len(data) - 1, 0))]
-        self.first = np.where(self.starts == self.ends, np.uint8(_BLANK), first)
+        self.bytes = data
+        self.binary = False
+        ends = []
+        for place in range(0, len(data), _BYTES_AT_A_TIME):
+            piece = data[place : place + _BYTES_AT_A_TIME]
+            ends.append(place + np.flatnonzero(piece == _NEWLINE))
+            self.binary |= not piece.min()
+        if len(data) and data[-1] != _NEWLINE:
+            ends.append(np.array([len(data)]))
+        self.ends = np.concatenate([*ends, np.empty(0, np.int64)])
+        self.starts = np.empty_like(self.ends)
+        self.starts[:1] = 0
+        np.add(self.ends[:-1], 1, out=self.starts[1:])
+        if len(self.ends):
+            # the last byte of a line that is not empty; of an empty one the newline before it, which is no matter
+            self.ends -= (data[self.ends - 1] == _RETURN) & (self.ends > self.starts)
+            self.first = data[np.minimum(self.starts, len(data) - 1)]
+            self.first[self.starts == self.ends] = _BLANK
+        else:
+            self.first = np.empty(0, np.uint8)
+
+    def raw(self, line: int) -> bytes:
+        """A line's bytes."""
+        return self.bytes[self.starts[line] : self.ends[line]].tobytes()
 
     def text(self, line: int) -> str:
         """A line, a character a byte: columns count bytes."""
-        return self.data[self.starts[line] : self.ends[line]].decode("latin-1")
+        return self.raw(line).decode("latin-1")
 
     def words(self, line: int) -> str:
         """A line as a person wrote it."""
-        raw = self.data[self.starts[line] : self.ends[line]]
+        raw = self.raw(line)
         try:
             return raw.decode("utf-8")
         except UnicodeDecodeError:
@@ -155,7 +179,7 @@ class Block:
         """The bytes of the data lines, comments among them."""
         if self.first >= self.last:
             return b""
-        return self.file.data[self.file.starts[self.first] : self.file.ends[self.last - 1]]
+        return self.file.bytes[self.file.starts[self.first] : self.file.ends[self.last - 1]].tobytes()
 
     def __len__(self) -> int:
         return len(self.rows())

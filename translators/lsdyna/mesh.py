@@ -27,15 +27,17 @@ _PINS = "rt1/i8 rr1/i8 rt2/i8 rr2/i8 local/i8"
 def _node(deck: Deck, block: Block, options: list[str]) -> bool:
     if options:
         return False
-    rows = block.rows(blank=False)
+    rows = block.rows()
     spec = "nid/i8 xyz/16*3 tc/i8 rc/i8"
     if _two_lines(block, rows):  # as older manuals have the long format
+        rows = block.rows(blank=False)
         table = Table(deck, block, rows[::2], "nid/i8 xyz/16*3")
         codes = Table(deck, block, rows[1::2], "tc/i8 rc/i8")
         tc, rc = codes["tc"], codes["rc"]
     else:
-        table = Table(deck, block, rows, spec)
+        table = Table(deck, block, rows, spec).without_blank("nid")
         tc, rc = table["tc"], table["rc"]
+    rows = table.rows
     for name, code in (("tc", tc), ("rc", rc)):
         for i in np.flatnonzero((code < 0) | (code > 7))[:20].tolist():
             deck.fault(block.file, int(rows[i]), 0, f"{name} is no constraint code", str(code[i]), "0 to 7")
@@ -70,25 +72,41 @@ def _solid(deck: Deck, block: Block, options: list[str]) -> bool:
         return False
     if dof:
         deck.count("{n} *ELEMENT_SOLID_DOF keywords: the further degrees of freedom are not read", 1, block)
-    rows = block.rows(blank=ortho or dof)
     if large:
-        _large(deck, block, rows, large, dof)
+        _large(deck, block, block.rows(blank=dof), large, dof)
         return True
+    if not (ortho or dof):
+        return _plain(deck, block)
+    rows = block.rows()
     if not len(rows):
         return True
     short = _short(block, rows)
-    if ortho or dof:
-        per = 1 + int(short[0]) + 2 * ortho + dof
-        rows = _whole(deck, block, rows, per)
-        head = rows[::per]
-        run = _two_line(deck, block, head, rows[1::per]) if short[0] else _one_line(deck, block, head)
-        if ortho:
-            first = per - 2 - dof
-            run.data["axis_a"] = Table(deck, block, rows[first::per], "a/16*3")["a"]
-            run.data["axis_d"] = Table(deck, block, rows[first + 1 :: per], "d/16*3")["d"]
-        deck.elements.append(run)
+    per = 1 + int(short[0]) + 2 * ortho + dof
+    rows = _whole(deck, block, rows, per)
+    head = rows[::per]
+    run = _two_line(deck, block, head, rows[1::per]) if short[0] else _one_line(deck, block, head)
+    if ortho:
+        first = per - 2 - dof
+        run.data["axis_a"] = Table(deck, block, rows[first::per], "a/16*3")["a"]
+        run.data["axis_d"] = Table(deck, block, rows[first + 1 :: per], "d/16*3")["d"]
+    deck.elements.append(run)
+    return True
+
+
+def _plain(deck: Deck, block: Block) -> bool:
+    """Elements of one line, of two, or both. A second field without a third begins an element of two lines."""
+    table = Table(deck, block, block.rows(), "eid/i8 pid/i8 nodes/i8*8").without_blank("eid")
+    if not len(table):
         return True
+    rows, nodes = table.rows, table["nodes"]
+    short = np.zeros(len(rows), bool)
+    maybe = np.flatnonzero(nodes[:, 0] == 0)
+    if len(maybe):
+        short[maybe] = _short(block, rows[maybe])
     heads = np.flatnonzero(short)
+    if not len(heads):
+        deck.elements.append(_run(deck, "solid", table, "solid"))
+        return True
     follows = np.zeros(len(rows) + 1, bool)
     follows[heads + 1] = True
     wrong = np.flatnonzero(follows[:-1] & short)
@@ -141,12 +159,12 @@ def _shell(deck: Deck, block: Block, options: list[str]) -> bool:
         return False
     if dof:
         deck.count("{n} *ELEMENT_SHELL_DOF keywords: the further degrees of freedom are not read", 1, block)
-    rows = block.rows(blank=thick or offset or dof)
+    rows = block.rows()
     if not len(rows):
         return True
     spec = "eid/i8 pid/i8 nodes/i8*8"
     if not (thick or offset or dof):
-        deck.elements.append(_run(deck, "shell", Table(deck, block, rows, spec), "shell"))
+        deck.elements.append(_run(deck, "shell", Table(deck, block, rows, spec).without_blank("eid"), "shell"))
         return True
     # elements with mid-nodes have a second card of thicknesses
     head, middle, bad = [], [], False
@@ -358,7 +376,7 @@ def _short(block: Block, rows: Ints) -> NDArray[np.bool_]:
     file, width = block.file, block.widths.of(8)
     short = np.empty(len(rows), bool)
     columns = 2 * width + np.arange(width)
-    commas = file.data.find(b",", int(file.starts[rows[0]]), int(file.ends[rows[-1]])) >= 0
+    commas = bool((file.bytes[int(file.starts[rows[0]]) : int(file.ends[rows[-1]])] == _COMMA).any())
     for start in range(0, len(rows), _ROWS_AT_A_TIME):
         part = rows[start : start + _ROWS_AT_A_TIME]
         ends = file.ends[part] - file.starts[part]

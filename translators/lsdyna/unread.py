@@ -31,7 +31,7 @@ def keep(deck: Deck, block: Block, rows: Ints | None = None, why: str = "") -> N
     if b"&" in data or b"<" in data:
         text = "\n".join(resolved_line(deck, block, int(row)) for row in rows)
     else:
-        text = "\n".join(file.data[file.starts[row] : file.ends[row]].decode("latin-1") for row in rows.tolist())
+        text = "\n".join(file.text(row) for row in rows.tolist())
     name = block.name + (f" {block.remark}" if block.remark not in ("+", "-", "%") else "")
     deck.model.native.setdefault("lsdyna", []).append((name.strip(), block.widths.value, text))
 
