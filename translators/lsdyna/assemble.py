@@ -14,7 +14,6 @@ from zrno.translators.lsdyna.placing import place_nodes
 from zrno.translators.lsdyna.shapes import default_order, order_by_place, split_solids
 from zrno.translators.model import ElementBlock, Floats, Ints, Part
 
-_ROWS_AT_A_TIME = 250_000
 _SAMPLE = 200  # elements that tell the order of mid-nodes
 _LARGE = {"H20": ("hex20", 20), "H27": ("hex27", 27), "T15": ("tet10", 10), "P21": ("wedge6", 6), "H64": ("hex8", 8)}
 Data = dict[str, NDArray[Any]]
@@ -216,19 +215,17 @@ def _shell_shapes(nodes: Ints) -> Iterator[tuple[str, Ints | None, Ints]]:
 def _to_places(deck: Deck, run: ElementRun, which: Ints | None, ids: Ints) -> int:
     """Turn node numbers into places, in the array itself. Returns how many elements lack nodes where that is no fault:
     in a file without nodes, or where parts of a deck are looked at."""
-    missing, whole = 0, bool(len(deck.model.node_ids))
-    for start in range(0, len(ids), _ROWS_AT_A_TIME):
-        part = ids[start : start + _ROWS_AT_A_TIME]
-        places = deck.places(part)
-        bad = np.flatnonzero((places < 0).any(axis=1))
-        missing += len(bad)
-        if whole and not deck.partial:
-            for i in bad[:20].tolist():
-                place = start + i if which is None else int(which[start + i])
-                absent = int(part[i][places[i] < 0][0])
-                _absent(deck, run, place, absent)
-        part[:] = places
-    return missing
+    missing = deck.to_places(ids)
+    if not missing:
+        return 0
+    if not len(deck.model.node_ids) or deck.partial:
+        np.maximum(ids, -1, out=ids)
+        return missing
+    for i in np.flatnonzero((ids < 0).any(axis=1))[:20].tolist():
+        place = i if which is None else int(which[i])
+        _absent(deck, run, place, -1 - int(ids[i].min()))
+    np.maximum(ids, -1, out=ids)
+    return 0
 
 
 def _absent(deck: Deck, run: ElementRun, place: int, node: int) -> None:

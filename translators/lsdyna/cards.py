@@ -7,10 +7,7 @@ parameters, and cells that are odd, one by one.
 
 from __future__ import annotations
 
-import os
 import re
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -18,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from zrno.translators.lsdyna.bulk import in_threads
 from zrno.translators.lsdyna.expressions import BadExpression
 from zrno.translators.lsdyna.lexer import Block, Widths
 from zrno.translators.lsdyna.parameters import is_reference
@@ -27,8 +25,7 @@ if TYPE_CHECKING:
     from zrno.translators.lsdyna.deck import Deck
 
 _FEW = 100_000  # numbers: below this Python parses them before the jitted kernels are loaded
-_ROWS_AT_A_TIME = 50_000
-_MOST_THREADS = 8
+_ROWS_AT_A_TIME = 25_000
 _MANY = 1000  # rows that take care: as many are looked at for commas all at once
 _NONE = np.empty(0, np.int64)
 _LARGEST = 2**62
@@ -211,15 +208,6 @@ class Card:
             self.fault(name, f"{name} is not an integer", "a whole number", index)
             return 0
         return int(number)
-
-
-def in_threads(do: Callable[[int], Ints], starts: range) -> list[Ints]:
-    """do(start) of each start, in as many threads as there are processors: kernels and numpy let each other run."""
-    threads = min(len(os.sched_getaffinity(0)), len(starts), _MOST_THREADS)
-    if threads < 2:
-        return [do(start) for start in starts]
-    with ThreadPoolExecutor(threads) as pool:
-        return list(pool.map(do, starts))
 
 
 class Table:

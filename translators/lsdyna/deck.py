@@ -14,6 +14,7 @@ from zrno.translators.lsdyna.parameters import Parameters
 from zrno.translators.model import Floats, Ints, Model, Source
 from zrno.translators.text import MAX_FAULTS, Fault, InputError
 
+_MANY = 500_000  # numbers: with so many the jitted loop pays for its loading
 _TABLE_ROOM = 8  # a table of all numbers is used where they are at most so many times the nodes
 
 
@@ -138,6 +139,17 @@ class Deck:
         sorted_ids = self.model.node_ids[self._order]
         place = np.minimum(np.searchsorted(sorted_ids, ids), len(sorted_ids) - 1)
         return np.where(sorted_ids[place] == ids, self._order[place], -1)
+
+    def to_places(self, ids: Ints) -> int:
+        """Numbers (n, k) to places, in the array itself: where there is no such node, -1 minus its number. Returns how
+        many rows lack one."""
+        if self._table is not None and ids.size > _MANY:
+            from zrno.translators.lsdyna.kernels import to_places
+
+            return to_places(ids, self._table)
+        places = self.places(ids)
+        ids[:] = np.where(places < 0, -1 - np.maximum(ids, 0), places)
+        return int((ids < 0).any(axis=1).sum())
 
     def found(self, ids: Ints, what: str, block: Block, row: int | None = None) -> Ints:
         """Places of nodes that a keyword lists; those that are not in the deck are left out, and counted."""

@@ -10,14 +10,15 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from zrno.translators.lsdyna.bulk import load
 from zrno.translators.text import Ints
 
 _STAR, _DOLLAR, _BLANK, _NEWLINE, _RETURN = b"*$ \n\r"
-_BYTES_AT_A_TIME = 1 << 20  # searched for the ends of lines: they stay in the cache
 _TAIL = 1000  # rows looked at together for blank ones at the end
 _ROWS_AT_A_TIME = 50_000
 _KEYWORD = re.compile(r"\*\s*([^\s,(]+)\s*(.*)")
@@ -44,23 +45,18 @@ class File:
     a blank of an empty line; binary: whether a byte is 0.
     """
 
-    def __init__(self, shown: str, data: NDArray[np.uint8]) -> None:
+    def __init__(self, shown: str, path: Path) -> None:
+        data, ends, self.binary = load(path, shown)
         if data[:3].tobytes() == b"\xef\xbb\xbf":  # a mark that some editors put before UTF-8
-            data = data[3:]
+            data, ends = data[3:], ends - 3
         self.shown = shown
         self.bytes = data
-        self.binary = False
-        ends = []
-        for place in range(0, len(data), _BYTES_AT_A_TIME):
-            piece = data[place : place + _BYTES_AT_A_TIME]
-            ends.append(place + np.flatnonzero(piece == _NEWLINE))
-            self.binary |= not piece.min()
         if len(data) and data[-1] != _NEWLINE:
-            ends.append(np.array([len(data)]))
-        self.ends = np.concatenate([*ends, np.empty(0, np.int64)])
-        self.starts = np.empty_like(self.ends)
+            ends = np.append(ends, len(data))
+        self.ends = ends
+        self.starts = np.empty_like(ends)
         self.starts[:1] = 0
-        np.add(self.ends[:-1], 1, out=self.starts[1:])
+        np.add(ends[:-1], 1, out=self.starts[1:])
         if len(self.ends):
             # the last byte of a line that is not empty; of an empty one the newline before it, which is no matter
             self.ends -= (data[self.ends - 1] == _RETURN) & (self.ends > self.starts)

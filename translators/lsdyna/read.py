@@ -5,9 +5,6 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
 from zrno.translators.lsdyna import assemble
 from zrno.translators.lsdyna.cards import Card
 from zrno.translators.lsdyna.conditions import CONDITIONS
@@ -27,9 +24,8 @@ from zrno.translators.lsdyna.placing import PLACING
 from zrno.translators.lsdyna.sets import SETS, resolve_sets
 from zrno.translators.lsdyna.unread import keep
 from zrno.translators.model import Model
-from zrno.translators.text import Fault, InputError, read_bytes
+from zrno.translators.text import Fault, InputError
 
-_LARGE = 1 << 20  # bytes
 _HANDLERS = Registry()
 for _registry in (MESH, PLACING, PARTS, MATERIALS, SETS, CONDITIONS, LOADS, CONTROL):
     _HANDLERS.update(_registry)
@@ -69,7 +65,7 @@ class _Reader:
 
     def file(self, path: Path, name: str, widths: Widths) -> None:
         """Read a file; its keywords are handled as they come."""
-        file = File(name, _bytes(path))
+        file = File(name, path)
         if file.binary:
             raise InputError([Fault(name, 1, 1, "a binary file", expected="a keyword deck")])
         if not file.has_keywords() and not self.includes.open:
@@ -125,16 +121,6 @@ class _Reader:
             self.file(path, said, block.widths)
         finally:
             deck.frame = before
-
-
-def _bytes(path: Path) -> NDArray[np.uint8]:
-    """The bytes of a file. Raises InputError."""
-    if path.is_file() and path.stat().st_size > _LARGE:
-        try:
-            return np.fromfile(path, np.uint8)  # without the pages' first touch one by one: twice as fast
-        except OSError:
-            pass  # it is said below
-    return np.frombuffer(read_bytes(path), np.uint8)
 
 
 def _parameter(deck: Deck, block: Block, options: list[str]) -> None:

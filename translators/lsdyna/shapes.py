@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from zrno.translators.elements import TABLE
 from zrno.translators.model import Floats, Ints
@@ -19,6 +20,7 @@ _HEX_FACES = TABLE["hex8"].shape.faces
 _HEX_EDGES = TABLE["hex8"].shape.edges
 
 # LS-DYNA's order of mid-nodes in VTK's places: bottom edges, vertical edges, top edges.
+_MANY = 50_000  # solids: with so many the jitted loop pays for its loading
 _HEX20 = (*range(8), 8, 9, 10, 11, 16, 17, 18, 19, 12, 13, 14, 15)
 
 
@@ -90,14 +92,11 @@ def split_solids(nodes: Ints) -> Iterator[tuple[str, Ints | None, Ints]]:
 
     nodes: (n, 8) numbers; a last four of zeros means a tetrahedron. What no shape fits stays "hex8".
     """
-    count = len(nodes)
-    zero = (nodes[:, 4:] == 0).all(axis=1) if count and (nodes[:, 7] == 0).any() else np.zeros(count, bool)
-    if zero.any():
+    if len(nodes) and nodes.min() <= 0:
+        zero = (nodes[:, 4:] == 0).all(axis=1)
         nodes = nodes.copy()
         nodes[zero, 4:] = nodes[zero, 3:4]
-    odd = np.zeros(count, bool)
-    for a, b in _HEX_EDGES:
-        odd |= nodes[:, a] == nodes[:, b]
+    odd = _repeated(nodes)
     places = np.flatnonzero(odd)
     if not len(places):
         yield "hex8", None, nodes
@@ -122,6 +121,17 @@ def split_solids(nodes: Ints) -> Iterator[tuple[str, Ints | None, Ints]]:
         turned = np.concatenate([n for _, n in parts])
         order = np.argsort(which, kind="stable")
         yield kind, which[order], turned[order]
+
+
+def _repeated(nodes: Ints) -> NDArray[np.bool_]:
+    if len(nodes) > _MANY:
+        from zrno.translators.lsdyna.kernels import repeated
+
+        return repeated(nodes, np.array(_HEX_EDGES))
+    odd = np.zeros(len(nodes), bool)
+    for a, b in _HEX_EDGES:
+        odd |= nodes[:, a] == nodes[:, b]
+    return odd
 
 
 def default_order(kind: str) -> tuple[int, ...]:
