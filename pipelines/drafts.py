@@ -61,9 +61,7 @@ class Draft:
 
 
 @contextmanager
-def drafts(
-    scene: Scene, folder: Path, *, publishing: bool, allow_outside: bool = False
-) -> Iterator[list[Draft]]:
+def drafts(scene: Scene, folder: Path, *, publishing: bool, allow_outside: bool = False) -> Iterator[list[Draft]]:
     """Every deck that a scene makes, for the time of the block; what is not published then is gone after it.
 
     folder: of the scene; publishing: whether they are to be published, and so lie on the same disk as their targets;

@@ -10,7 +10,7 @@ from zrno.translators import read
 
 
 def info(path: Path, *, allow_outside: bool = False) -> dict[str, Any]:
-    """The keys of `zrno info --json`. A particle deck of a coupled run is read as such, with a warning, and a piece of a
+    """The keys of `zrno info --json`. A particle deck of a coupled run is read as such, with a warning; a piece of a
     deck as what it is.
 
     allow_outside: files that it includes may stand outside its folder.

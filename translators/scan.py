@@ -59,10 +59,10 @@ def _high_low(a, b):
 
 
 @intrinsic
-def _word(typing, array, place):  # type: ignore[no-untyped-def]
+def _word(typing, array, place):
     """Eight bytes of an array from a place on as one word, the first lowest: of any alignment, and unchecked."""
 
-    def code(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
+    def code(context, builder, signature, arguments):
         data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
         word = builder.load(builder.bitcast(builder.gep(data, [arguments[1]]), ir.IntType(64).as_pointer()))
         word.align = 1
@@ -72,10 +72,10 @@ def _word(typing, array, place):  # type: ignore[no-untyped-def]
 
 
 @intrinsic
-def _byte(typing, array, place):  # type: ignore[no-untyped-def]
+def _byte(typing, array, place):
     """One byte of an array, unchecked: an index that may be negative costs a comparison."""
 
-    def code(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
+    def code(context, builder, signature, arguments):
         data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
         return builder.load(builder.gep(data, [arguments[1]]))
 
@@ -234,7 +234,7 @@ def _fixed(data, starts, ends, columns, ints, reals, bits, care):
         for f in range(len(columns)):
             a, b = starts[i] + columns[f, 0], starts[i] + columns[f, 1]
             if columns[f, 2] < 0 and b - a == 8 and b <= ends[i]:
-                eight, good, blanks = _digits(_word(data, a))
+                eight, good, _ = _digits(_word(data, a))
                 if good:
                     ints[columns[f, 3], i] = np.int64(eight)
                     continue
@@ -273,7 +273,11 @@ def _free(data, starts, ends, only_commas, values, bits, counts, care):
             if a >= end:
                 break
             b = a
-            while b < end and _byte(data, b) != _COMMA and (only_commas or (_byte(data, b) != _BLANK and _byte(data, b) != _TAB)):
+            while (
+                b < end
+                and _byte(data, b) != _COMMA
+                and (only_commas or (_byte(data, b) != _BLANK and _byte(data, b) != _TAB))
+            ):
                 b += 1
             last = b
             while last > a and (_byte(data, last - 1) == _BLANK or _byte(data, last - 1) == _TAB):

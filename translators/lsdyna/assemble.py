@@ -12,7 +12,7 @@ from zrno.translators.elements import TABLE
 from zrno.translators.lsdyna.deck import Deck, ElementRun
 from zrno.translators.lsdyna.placing import place_nodes
 from zrno.translators.lsdyna.shapes import default_order, order_by_place, split_solids
-from zrno.translators.model import ElementBlock, Floats, Ints, Part
+from zrno.translators.model import ElementBlock, Ints, Part
 
 _SAMPLE = 200  # elements that tell the order of mid-nodes
 _LARGE = {"H20": ("hex20", 20), "H27": ("hex27", 27), "T15": ("tet10", 10), "P21": ("wedge6", 6), "H64": ("hex8", 8)}
@@ -296,8 +296,3 @@ def _planes(deck: Deck) -> None:
     flat = bool(len(model.xyz)) and bool((model.xyz[:, 2] == model.xyz[0, 2]).all())
     others = [b for b in model.blocks if b.family != "plane" and TABLE[b.kind].dimension >= 2]
     model.dimension = 2 if flat and not others else 3
-
-
-def rows_of(points: Floats, box: tuple[Floats, Floats]) -> NDArray[np.bool_]:
-    """Which points a box holds."""
-    return ((points >= box[0]) & (points <= box[1])).all(axis=1)

@@ -44,7 +44,7 @@ def load(path: Path, shown: str) -> tuple[NDArray[np.uint8], Ints, bool]:
             file.seek(start)
             filled = 0
             while filled < len(view):
-                count = file.readinto(memoryview(view)[filled:])
+                count = file.readinto(view[filled:].data)
                 if not count:
                     raise InputError([Fault(shown, 1, 1, "the file changed while it was read")])
                 filled += count

@@ -285,14 +285,17 @@ class Table:
         def some(start: int) -> Ints:
             part = which[start : start + _ROWS_AT_A_TIME]
             lines = self.rows[part]
-            grid, count, care = scan.free(file.bytes, file.starts[lines], file.ends[lines], len(fields), only_commas=True)
+            grid, count, care = scan.free(
+                file.bytes, file.starts[lines], file.ends[lines], len(fields), only_commas=True
+            )
             numbers = np.where(np.isfinite(grid), grid, 0.5)
             odd = (whole & ((numbers != np.rint(numbers)) | (abs(numbers) > _EXACT))).any(axis=1) | (count < 2)
             if care is not None:
                 odd |= care
             grid[odd] = 0.0
             self._put(list(fields), [c.astype(np.int64) if w else c for c, w in zip(grid.T, whole, strict=True)], part)
-            return part[odd]
+            rest: Ints = part[odd]
+            return rest
 
         return np.concatenate([_NONE, *in_threads(some, range(0, len(which), _ROWS_AT_A_TIME))])
 

@@ -55,13 +55,11 @@ class Writer:
         return lines, lost
 
     def table(self, name: str, columns: Sequence[tuple[NDArray[Any], int]]) -> bytes:
-        """A keyword with rows of arrays, (n,) or (n, k), and the standard width of each; reals in their shortest text."""
+        """A keyword with rows of arrays, (n,) or (n, k), and their standard widths; reals in their shortest text."""
         (grid,), suffix = self.grids([columns])
         return f"*{name}{suffix}\n".encode() + rows([grid])
 
-    def grids(
-        self, cards: Sequence[Sequence[tuple[NDArray[Any], int]]]
-    ) -> tuple[list[NDArray[np.uint8]], str]:
+    def grids(self, cards: Sequence[Sequence[tuple[NDArray[Any], int]]]) -> tuple[list[NDArray[np.uint8]], str]:
         """The characters of tables, and the suffix of a keyword with these cards."""
         found = [self._texts(columns, self.widths) for columns in cards]
         suffix = ""
@@ -71,7 +69,9 @@ class Writer:
         self.inexact += sum(lost for _, lost in found)
         return [np.concatenate(grids, axis=1) for grids, _ in found], suffix
 
-    def _texts(self, columns: Sequence[tuple[NDArray[Any], int]], widths: Widths) -> tuple[list[NDArray[np.uint8]], int]:
+    def _texts(
+        self, columns: Sequence[tuple[NDArray[Any], int]], widths: Widths
+    ) -> tuple[list[NDArray[np.uint8]], int]:
         grids, lost = [], 0
         for values, width in columns:
             own = widths.of(width)

@@ -84,11 +84,10 @@ def _contact(deck: Deck, block: Block, options: list[str]) -> bool:
             kind = "all"
         offset = "part" if kind == "part" else "set"
         sides.append((kind, first.id(side, offset)))
-    friction = [float(second[name]) if abs(second[name]) < 1e10 else 0.0 for name in ("fs", "fd")]
+    static, kinetic = (float(second[name]) if abs(second[name]) < 1e10 else 0.0 for name in ("fs", "fd"))
     if not deck.frame.plain:
         deck.count("*INCLUDE_TRANSFORM: {n} contacts' boxes and further cards are as in their file", 1, block)
-    contact = Contact("_".join(options), sides[0], sides[1], *friction, number, name,
-                      source=deck.source(block))  # fmt: skip
+    contact = Contact("_".join(options), sides[0], sides[1], static, kinetic, number, name, source=deck.source(block))
     contact.native = {
         "lsdyna": {
             "first": [first[name] for name in ("abox", "bbox", "apr", "bpr")],

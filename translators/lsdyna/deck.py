@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from zrno.translators.lsdyna.frames import Frame
 from zrno.translators.lsdyna.lexer import Block, File
@@ -67,7 +68,7 @@ class Deck:
         self._counts: dict[str, tuple[int, str]] = {}
         self._places: dict[int, int] | None = None
         self._order: Ints | None = None
-        self._table: Ints | None = None
+        self._table: NDArray[np.int32] | None = None
 
     # Faults and remarks
 

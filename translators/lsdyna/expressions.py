@@ -27,6 +27,11 @@ def _sign(a: Value, b: Value) -> Value:
     return abs(a) if b >= 0 else -abs(a)
 
 
+def _mod(a: Value, b: Value) -> Value:
+    rest = math.fmod(a, b)
+    return rest if isinstance(a, float) or isinstance(b, float) else int(rest)
+
+
 def _nearest(x: float) -> int:
     return math.floor(x + 0.5) if x >= 0 else math.ceil(x - 0.5)
 
@@ -39,7 +44,7 @@ _ONE: dict[str, Callable[[Value], Value]] = {
     "floor": math.floor, "ceil": math.ceil, "ceiling": math.ceil,
 }  # fmt: skip
 _TWO: dict[str, Callable[[Value, Value], Value]] = {
-    "mod": lambda a, b: math.fmod(a, b) if isinstance(a, float) or isinstance(b, float) else int(math.fmod(a, b)),
+    "mod": _mod,
     "atan2": math.atan2,
     "sign": _sign,
     "pow": lambda a, b: _power(a, b),
@@ -80,8 +85,8 @@ def _tokens(text: str) -> list[tuple[str, str]]:
 def _power(a: Value, b: Value) -> Value:
     if isinstance(a, int) and isinstance(b, int) and b >= 0:
         if a not in (-1, 0, 1) and b * abs(a).bit_length() > 128:  # no number that takes long to work out
-            return float(a) ** float(b)
-        return a**b
+            return float(float(a) ** float(b))
+        return int(a**b)
     result = float(a) ** float(b)
     if isinstance(result, complex):
         raise BadExpression("a root of a negative number")
@@ -161,14 +166,14 @@ class _Parser:
         name = text.lower().lstrip("&")
         if self.next() == "(" and not text.startswith("&"):
             return self.function(name, depth)
-        value = self.names.get(name)
-        if isinstance(value, str):
+        known = self.names.get(name)
+        if isinstance(known, str):
             raise BadExpression(f"parameter {name} is a text")
-        if value is None:
+        if known is None:
             if name == "pi":
                 return math.pi
             raise BadExpression(f"parameter {name} is not defined before this line")
-        return value
+        return known
 
     def function(self, name: str, depth: int) -> Value:
         self.expect("(")

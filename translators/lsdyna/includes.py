@@ -61,7 +61,9 @@ class Includes:
         except (OSError, ValueError):
             path = None
         if path is None:
-            where = ", ".join(dict.fromkeys(str(p.parent) for p in [folder / given, *(b / given for b in self.folders)]))
+            where = ", ".join(
+                dict.fromkeys(str(p.parent) for p in [folder / given, *(b / given for b in self.folders)])
+            )
             if deck.partial:
                 deck.lacks(f"{block.file.shown}:{row + 1}: the file {name} that is included here is not there")
             else:
@@ -119,15 +121,15 @@ def transformed(deck: Deck, block: Block) -> tuple[int, str, Frame] | None:
     if second["prefix"] or second["suffix"]:
         deck.warn(block, "*INCLUDE_TRANSFORM: prefix and suffix of titles are not used")
     third = card("mass time length temperature/a incout/i charge")
-    factors = [third.real(name, 1.0) or 1.0 for name in ("mass", "time", "length")]
+    mass, time, length = (third.real(name, 1.0) or 1.0 for name in ("mass", "time", "length"))
     if third["temperature"] not in ("", "0", "0.0", "1", "1.0", "1.") and third["temperature"].strip("0.") != "1":
         deck.warn(block, f"*INCLUDE_TRANSFORM: temperatures are not changed ({third['temperature']})")
     tranid = card("tranid/i").id("tranid", "define")
-    if any(factor <= 0 for factor in factors):
+    if min(mass, time, length) <= 0:
         third.fault("mass", "a factor of *INCLUDE_TRANSFORM is not positive", "positive factors")
         return None
     try:
-        frame = deck.frame.inside({k: int(v) for k, v in offsets.items()}, *factors, tranid)
+        frame = deck.frame.inside({k: int(v) for k, v in offsets.items()}, mass, time, length, tranid)
     except BadExpression as error:
         first.fault("off", str(error))
         return None

@@ -1,4 +1,4 @@
-"""Jitted loops over large meshes: solids that repeat a node, and node numbers to places. Imported where there are many."""
+"""Jitted loops over large meshes: solids that repeat a node, and node numbers to places."""
 
 from __future__ import annotations
 

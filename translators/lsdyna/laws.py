@@ -173,7 +173,8 @@ _MATERIALS = (
             "D": "d", "W": "w", "X0": "x0", "C": "c", "N": "n", "ftype": "ftype", "vec": "vec",
             "tension_cutoff": "toff"}),
     LawRow("MAT_MOHR_COULOMB", 173, "mohr_coulomb",
-           ("mid/i ro gmod rnu unused phi cval psi", "novoid/i nplanes/i extra/i lccpdr/i lccpt/i lccjdr/i lccjt/i lcsfac/i",
+           ("mid/i ro gmod rnu unused phi cval psi",
+            "novoid/i nplanes/i extra/i lccpdr/i lccpt/i lccjdr/i lccjt/i lcsfac/i",
             "gmoddp gmodgr lcgmep lcphiep lcpsiep lcgmst cvalgr aniso", "lcgmt lccvt lcpht epdam1 epdam2"),
            {"E": "gmod", "nu": "rnu", "c": "cval", "phi": "phi", "psi": "psi"}, there=_from_shear, back=_to_shear),
     LawRow("MAT_DRUCKER_PRAGER", 193, "drucker_prager_soil",
@@ -201,12 +202,16 @@ def find(keyword: str) -> LawRow | None:
     rows = MATERIALS if keyword.startswith("MAT_") else EQUATIONS
     if keyword in rows:
         return rows[keyword]
-    family, _, rest = keyword.partition("_")
+    _, _, rest = keyword.partition("_")
     number, _, option = rest.partition("_")
     if not (number.isdigit() and number.isascii() and len(number) <= 4):
         return None
     for row in rows.values():
-        if row.number == int(number) and row.keyword.endswith("_SPALL") == (option == "SPALL") and option in ("", "SPALL"):
+        if (
+            row.number == int(number)
+            and row.keyword.endswith("_SPALL") == (option == "SPALL")
+            and option in ("", "SPALL")
+        ):
             return row
     return None
 
@@ -220,7 +225,5 @@ def scaled(said: Said, scale: Callable[[int, int, int], float]) -> Said:
         if said.law in ("cap", "gruneisen", "soil_foam") and name in ("C", "R", "W", "N", "a2") and name not in own:
             powers = None
         found[name] = value * scale(*powers) if powers else value
-    tables = {
-        name: table * np.array([1.0, scale(*_STRESS)]) for name, table in said.tables.items()
-    }
+    tables = {name: table * np.array([1.0, scale(*_STRESS)]) for name, table in said.tables.items()}
     return Said(said.law, found, tables, dict(said.curves))

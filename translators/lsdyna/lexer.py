@@ -157,10 +157,10 @@ class Block:
         return rows
 
     def _blank(self, rows: Ints) -> NDArray[np.bool_]:
-        """Which rows have no text. Nearly all begin with a blank: only those that end with one too are looked through."""
+        """Which rows have no text. Nearly all begin with a blank: only those that end with one too are looked at."""
         file = self.file
         starts, ends = file.starts[rows], file.ends[rows]
-        empty = starts == ends
+        empty: NDArray[np.bool_] = starts == ends
         last = file.bytes[np.maximum(ends - 1, 0)]
         odd = np.flatnonzero((file.first[rows] <= _BLANK) & (last <= _BLANK) & ~empty)
         for begin in range(0, len(odd), _ROWS_AT_A_TIME):

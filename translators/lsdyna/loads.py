@@ -270,7 +270,9 @@ def _initial(deck: Deck, block: Block, options: list[str]) -> bool:
             left = node_places(deck, other, block, row)
             inside[left] = False
             _same(deck, block, row, np.sort(left), *other_velocity, other)
-        _same(deck, block, row, np.flatnonzero(inside), *first_velocity, nsid if nsid and not box and not other else None)
+        _same(
+            deck, block, row, np.flatnonzero(inside), *first_velocity, nsid if nsid and not box and not other else None
+        )
 
     deck.late.append(act)
     return True

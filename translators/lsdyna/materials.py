@@ -44,7 +44,7 @@ def _known(deck: Deck, block: Block, rows: list[int], row: laws.LawRow, name: st
     for i, spec in enumerate(row.cards):
         card = Card(deck, block, rows[i] if i < len(rows) else None, spec)
         for key, size in card.layout.sizes.items():
-            many = size > 1 or key in ("eps", "es", "p") and row.points
+            many = size > 1 or (key in ("eps", "es", "p") and bool(row.points))
             if key == "unused":
                 continue
             if many:

@@ -110,13 +110,10 @@ def _plain(deck: Deck, block: Block) -> bool:
     follows = np.zeros(len(rows) + 1, bool)
     follows[heads + 1] = True
     wrong = np.flatnonzero(follows[:-1] & short)
-    # a row of two numbers behind another: the first lacks its nodes
-    for i in wrong[:20].tolist():
-        deck.fault(block.file, int(rows[i - 1]), 0, "an element without nodes", block.file.text(int(rows[i - 1])).strip(),
-                   "a line of nodes behind it")  # fmt: skip
-    if follows[-1]:
-        last = int(rows[-1])
-        deck.fault(block.file, last, 0, "an element without nodes", block.file.text(last).strip(), "a line of nodes")
+    # a row of two numbers behind another, or at the end: it lacks its nodes
+    bare = [*rows[wrong - 1].tolist()[:20], *([int(rows[-1])] if follows[-1] else [])]
+    for row in bare:
+        deck.fault(block.file, row, 0, "an element without nodes", block.file.text(row).strip(), "a line of nodes")
     if len(wrong) or follows[-1]:
         return True
     if len(heads):
@@ -271,9 +268,7 @@ def _beam(deck: Deck, block: Block, options: list[str]) -> bool:
 def _discrete(deck: Deck, block: Block, options: list[str]) -> bool:
     if options:
         return False
-    table = Table(
-        deck, block, block.rows(blank=False), "eid/i8 pid/i8 nodes/i8*2 vid/i8 scale/16 print/i8 offset/16"
-    )
+    table = Table(deck, block, block.rows(blank=False), "eid/i8 pid/i8 nodes/i8*2 vid/i8 scale/16 print/i8 offset/16")
     run = _run(deck, "spring", table, "spring")
     if table["vid"].any():
         run.data["direction"] = table.ids("vid", "define")

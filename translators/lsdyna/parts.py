@@ -32,7 +32,9 @@ def _part(deck: Deck, block: Block, options: list[str]) -> bool:
         title = block.file.words(rows[0]).rstrip()[:200].strip()
         if len(rows) == 1:
             if title:
-                deck.fault(block.file, rows[0], 0, "a part without its card", title, "a title line, then pid, secid, ..")
+                deck.fault(
+                    block.file, rows[0], 0, "a part without its card", title, "a title line, then pid, secid, .."
+                )
             return True
         card = Card(deck, block, rows[1], PARTS_CARD)
         number = card.id("pid", "part")

@@ -47,8 +47,9 @@ def place_nodes(deck: Deck) -> None:
             rows = deck.transformations.get(number)
             if rows is None:
                 if number not in said:
-                    deck.fault(run.block.file, run.block.line, 0, "a file is placed by a transformation that is not there",
-                               str(number), "a *DEFINE_TRANSFORMATION of this number")  # fmt: skip
+                    message = "a file is placed by a transformation that is not there"
+                    expected = "a *DEFINE_TRANSFORMATION of this number"
+                    deck.fault(run.block.file, run.block.line, 0, message, str(number), expected)
                 said.add(number)
                 continue
             matrix = _matrix(deck, number, rows, said)

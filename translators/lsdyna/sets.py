@@ -82,7 +82,8 @@ def _steps(deck: Deck, this: SetSteps, block: Block, rows: Ints, layout: str) ->
 
     def members(table: Table, name: str) -> Ints:
         found = table.ids(name, numbers).ravel()
-        return found[found != 0]
+        kept: Ints = found[found != 0]
+        return kept
 
     match layout:
         case "ADD" | "INTERSECT":

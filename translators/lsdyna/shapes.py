@@ -160,6 +160,9 @@ def order_by_place(kind: str, points: Floats) -> tuple[int, ...] | None:
     nearest = distance.argmin(axis=1)
     default = np.array(default_order(kind)[corners:]) - corners
     rows = np.arange(len(default))
-    if len(set(nearest.tolist())) != len(nearest) or distance[rows, nearest].sum() >= 0.99 * distance[rows, default].sum():
+    if (
+        len(set(nearest.tolist())) != len(nearest)
+        or distance[rows, nearest].sum() >= 0.99 * distance[rows, default].sum()
+    ):
         return None
     return (*range(corners), *(nearest + corners).tolist())

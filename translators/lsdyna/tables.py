@@ -1,4 +1,4 @@
-"""Cards of parts and sections, one place for reader and writer: their fields, and what they say in the model's words."""
+"""Cards of parts and sections, one place for reader and writer: their fields, and what they say."""
 
 from __future__ import annotations
 

@@ -80,7 +80,9 @@ class Conditions:
                 continue
             origin = system.origin
             first: Card = ("cid/i o*3 l*3", {"cid": system.id, "o": origin, "l": origin + system.axes[0]})
-            yield self._titled("DEFINE_COORDINATE_SYSTEM", system.name, [first, ("p*3", {"p": origin + system.axes[1]})])
+            yield self._titled(
+                "DEFINE_COORDINATE_SYSTEM", system.name, [first, ("p*3", {"p": origin + system.axes[1]})]
+            )
 
     def _sets(self) -> Iterator[bytes]:
         seen: set[tuple[str, int]] = set()
@@ -140,7 +142,8 @@ class Conditions:
     # Constraints, loads, motions
 
     def _constraint(self, one: Constraint) -> bytes:
-        name, cards = "BOUNDARY_SPC_", []
+        name = "BOUNDARY_SPC_"
+        cards: list[Any] = []
         limited = one.birth is not None or one.death is not None
         uniform = bool(len(one.dofs)) and bool((one.dofs == one.dofs[:1]).all())
         rows: list[tuple[int, NDArray[Any]]]
@@ -247,7 +250,9 @@ class Conditions:
                     cards: list[Card] = [("lcid/i sf", {"lcid": lcid, "sf": -value})]
                     yield self.writer.keyword(f"LOAD_BODY_{axis}", cards)
         if len(limits) > 1:
-            self.report.approximate("body loads", len(self.model.body_loads), "a keyword deck has one set of loaded parts")
+            self.report.approximate(
+                "body loads", len(self.model.body_loads), "a keyword deck has one set of loaded parts"
+            )
         parts = next((p for p in limits if p is not None), None)
         if parts is not None:
             own = next((s for s in self.part_sets if tuple(s.parts.tolist()) == parts), None)

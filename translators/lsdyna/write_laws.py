@@ -98,9 +98,16 @@ def _in_dyna(said: laws.Said, place: str, report: Report) -> laws.Said:
     if said.law == "drucker_prager":
         # the cap model without its exponential: sqrt(J2) = alpha + theta I1
         nu = p.get("nu", 0.0)
-        found = {"K": p["E"] / (3 * (1 - 2 * nu)), "G": p["E"] / (2 * (1 + nu)), "alpha": p["k"], "theta": p.get("alpha", 0.0)}
+        found = {
+            "K": p["E"] / (3 * (1 - 2 * nu)),
+            "G": p["E"] / (2 * (1 + nu)),
+            "alpha": p["k"],
+            "theta": p.get("alpha", 0.0),
+        }
         found |= {name: p[name] for name in ("tension_cutoff", "X0", "W", "D", "R") if name in p}
-        report.notes.append(f"{place}: Drucker-Prager is written as MAT_GEOLOGIC_CAP_MODEL with alpha = k, theta = alpha")
+        report.notes.append(
+            f"{place}: Drucker-Prager is written as MAT_GEOLOGIC_CAP_MODEL with alpha = k, theta = alpha"
+        )
         return laws.Said("cap", found)
     if said.law == "von_mises_power":
         strain = np.array([0.0, 0.002, 0.01, 0.03, 0.1, 0.2, 0.5, 1.0])

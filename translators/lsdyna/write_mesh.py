@@ -236,7 +236,8 @@ _FAMILIES = {
 
 def code(held: NDArray[np.bool_]) -> Ints:
     """Constraint codes of three directions held or not, (n, 3)."""
-    return np.array([0, 1, 2, 4, 3, 6, 5, 7])[held @ np.array([1, 2, 4])]
+    codes: Ints = np.array([0, 1, 2, 4, 3, 6, 5, 7])[held @ np.array([1, 2, 4])]
+    return codes
 
 
 def several(writer: Writer, name: str, cards: Sequence[Columns]) -> bytes:

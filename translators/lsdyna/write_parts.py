@@ -19,7 +19,12 @@ def parts(model: Model, writer: Writer) -> Iterator[bytes]:
         eos = part.eos
         if eos is None and part.material in model.materials:
             eos = model.materials[part.material].eos
-        fields: dict[str, Any] = {"pid": part.id, "secid": part.section or 0, "mid": part.material or 0, "eosid": eos or 0}
+        fields: dict[str, Any] = {
+            "pid": part.id,
+            "secid": part.section or 0,
+            "mid": part.material or 0,
+            "eosid": eos or 0,
+        }
         fields |= {name: part.native[name] for name in ("hgid", "grav", "adpopt", "tmid") if name in part.native}
         yield _part(part, fields, writer)
 
