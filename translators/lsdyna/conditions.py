@@ -143,7 +143,7 @@ def _region(deck: Deck, block: Block, options: list[str]) -> bool:
             deck.boxes[number] = (values[::2], values[1::2])
         else:
             deck.vectors[number] = values[3:] - values[:3]
-    keep(deck, block, why="used here for what refers to it")
+    keep(deck, block, why="used for what refers to it, and not kept", quiet=True)
     return True
 
 

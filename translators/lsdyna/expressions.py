@@ -61,6 +61,8 @@ def evaluate(text: str, names: Mapping[str, Value | str]) -> Value:
             raise BadExpression(f"{parser.next()!r} is not expected there")
         if isinstance(value, complex) or not math.isfinite(value):
             raise BadExpression("the value is not a finite number")
+    except ZeroDivisionError as error:
+        raise BadExpression("a division by zero") from error
     except (ArithmeticError, ValueError, TypeError) as error:
         raise BadExpression(str(error) or type(error).__name__) from error
     return value

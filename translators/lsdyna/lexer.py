@@ -122,11 +122,11 @@ class File:
         return Widths.I10 if options.get("I10") == "Y" else widths
 
     def _looks_long(self, line: int) -> bool:
-        """Whether the first row of nodes or elements has its first number past column 10."""
+        """Whether the first row of nodes or elements has its first number past column 8."""
         for i in np.flatnonzero(self.first == _STAR).tolist():
             if i > line and self.text(i).upper().startswith(("*NODE", "*ELEMENT")):
                 row = next((self.text(k) for k in range(i + 1, len(self.first)) if self.first[k] != _DOLLAR), "")
-                return "," not in row and not row[:10].strip() and bool(row[10:20].strip())
+                return "," not in row and not row[:8].strip() and bool(row[8:20].strip())
         return False
 
 
@@ -155,6 +155,11 @@ class Block:
             if len(full):
                 break
         return rows
+
+    def blank_behind(self, rows: Ints, count: int) -> Ints:
+        """The data lines with up to `count` of the blank ones behind them, which are cards where cards are counted."""
+        every = self.first + np.flatnonzero(self.file.first[self.first : self.last] != _DOLLAR)
+        return every[: len(rows) + count]
 
     def _blank(self, rows: Ints) -> NDArray[np.bool_]:
         """Which rows have no text. Nearly all begin with a blank: only those that end with one too are looked at."""

@@ -14,6 +14,7 @@ from zrno.translators.text import Ints, parse_real
 
 MATERIALS = Registry()
 
+_LARGEST = 1e18
 _NO_MATERIAL = ("ADD", "NONLOCAL", "THERMAL")
 
 
@@ -40,11 +41,11 @@ def _law(deck: Deck, block: Block, options: list[str]) -> bool:
 
 def _known(deck: Deck, block: Block, rows: list[int], row: laws.LawRow, name: str) -> None:
     fields: laws.Fields = {}
-    card = None
+    lists = {key for pair in row.points.values() for key in pair}
     for i, spec in enumerate(row.cards):
         card = Card(deck, block, rows[i] if i < len(rows) else None, spec)
         for key, size in card.layout.sizes.items():
-            many = size > 1 or (key in ("eps", "es", "p") and bool(row.points))
+            many = size > 1 or key in lists
             if key == "unused":
                 continue
             if many:
@@ -89,7 +90,8 @@ def _other(deck: Deck, block: Block, rows: Ints, keyword: str, *, title: bool) -
         return True
     first = Card(deck, block, int(rows[0]), "id/a ro/a")
     number_text, density_text = first["id"], first["ro"]
-    number = int(float(number_text)) if parse_real(number_text) not in (None, 0.0) and len(number_text) < 19 else 0
+    number = parse_real(number_text) or 0.0
+    number = int(number) if abs(number) < _LARGEST else 0
     if not number:
         return False  # named by letters, or nothing that we understand
     number = deck.frame.moved(number, "material")
@@ -102,7 +104,8 @@ def _other(deck: Deck, block: Block, rows: Ints, keyword: str, *, title: bool) -
     source = deck.source(block, int(rows[0]))
     if what == "material":
         _warn_twice(deck, block, int(rows[0]), what, number, number in deck.model.materials)
-        density = parse_real(density_text) or 0.0
+        springs = keyword.startswith(("MAT_SPRING", "MAT_DAMPER", "MAT_S0"))  # they have no density
+        density = 0.0 if springs else parse_real(density_text) or 0.0
         deck.model.materials[number] = Material(number, name, "", density, source=source, native=native)
     else:
         _warn_twice(deck, block, int(rows[0]), what, number, number in deck.model.equations_of_state)

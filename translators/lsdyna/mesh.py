@@ -169,6 +169,7 @@ def _shell(deck: Deck, block: Block, options: list[str]) -> bool:
     if thick:
         first = Table(deck, block, rows[:1], spec)
         per = 1 + after + bool(first["nodes"][0, 4:].any())
+        rows = block.blank_behind(rows, -len(rows) % per)
         heads = rows[: len(rows) - len(rows) % per : per]
         table = Table(deck, block, heads, spec)
         uniform = len(rows) % per == 0 and bool(
@@ -360,6 +361,9 @@ def _run(deck: Deck, family: str, table: Table, shape: str, *, nodes: bool = Tru
 def _whole(deck: Deck, block: Block, rows: Ints, per: int) -> Ints:
     """The rows of whole elements, each of `per` cards; a fault where the last is cut."""
     rest = len(rows) % per
+    if rest:
+        rows = block.blank_behind(rows, per - rest)
+        rest = len(rows) % per
     if rest:
         deck.fault(block.file, int(rows[-1]), 0, "the keyword ends inside an element", "", f"{per} lines for each")
         return rows[: len(rows) - rest]

@@ -27,6 +27,7 @@ _OF_FAMILY = {"shell": ("shell", "plane")}
 # Types of the sets that *SET_NODE_ADD_ADVANCED names, by number.
 _ADVANCED = {1: "node", 2: "shell", 3: "beam", 4: "solid", 5: "segment", 6: "spring", 7: "tshell"}
 _MOST_LISTED = 1_000_000  # numbers of ranges in a file that has nothing to pick from
+_DEEPEST = 200  # sets of sets
 _MOST_WORK = 50  # times as much as there is to pick from
 
 
@@ -191,10 +192,12 @@ def members_of(deck: Deck, this: SetSteps) -> Ints:
     if this.members is not None:
         return this.members
     shape = (0, 4) if this.kind == "segment" else (0,)
-    if this.busy:
-        deck.fault(this.block.file, this.row, 0, "the set is made of itself", str(this.id))
+    if this.busy or deck.depth > _DEEPEST:
+        message = "the set is made of itself" if this.busy else "sets are made of sets, too deep"
+        deck.fault(this.block.file, this.row, 0, message, str(this.id))
         return np.empty(shape, np.int64)
     this.busy = True
+    deck.depth += 1
     members = np.empty(shape, np.int64)
     pending: list[Ints] = []
     for add, find in this.steps:
@@ -213,6 +216,7 @@ def members_of(deck: Deck, this: SetSteps) -> Ints:
         _, first = np.unique(members, return_index=True)
         members = members[np.sort(first)]
     this.busy = False
+    deck.depth -= 1
     this.members = members
     return members
 

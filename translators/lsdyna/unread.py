@@ -16,14 +16,17 @@ _REFERENCE = re.compile(r"( *)(-?(?:&\w+|<[^<>]*>))")
 _INDEPENDENT = ("CONTROL", "DATABASE", "DAMPING")
 
 
-def keep(deck: Deck, block: Block, rows: Ints | None = None, why: str = "") -> None:
+def keep(deck: Deck, block: Block, rows: Ints | None = None, why: str = "", *, quiet: bool = False) -> None:
     """Count a keyword that is not read, or some of its rows, and keep it as text in the model's `native`."""
     if rows is None:
         rows = block.rows()
     frame = deck.frame
     kept = frame.plain or block.name.split("_")[0] in _INDEPENDENT
     what = f"*{block.name}: {why or 'not read'}"
-    deck.count(f"{what} ({{n}}), {'kept for .k alone' if kept else 'not kept: its include moves numbers'}", 1, block)
+    if not (quiet and kept):
+        deck.count(
+            f"{what} ({{n}}), {'kept for .k alone' if kept else 'not kept: its include moves numbers'}", 1, block
+        )
     if not kept:
         return
     file = block.file
