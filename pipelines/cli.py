@@ -104,6 +104,7 @@ def convert(
     with console.command(typer.Exit, json=json, verbose=verbose, quiet=quiet) as out:
         from zrno.pipelines.convert import convert as run_convert
         from zrno.pipelines.convert import report_text
+        from zrno.translators import load_settings
 
         if len(paths) < 2:
             raise ValueError("convert needs a source and a target: zrno convert SOURCE... TARGET")
@@ -113,7 +114,7 @@ def convert(
             particles=particles.value if particles else None,
             spacing=spacing,
             parts=part or (),
-            settings_file=settings,
+            settings=load_settings(settings) if settings else None,
             dialect=dialect.value if dialect else None,
             strict=strict,
             allow_outside=allow_outside,
@@ -202,6 +203,7 @@ def run(
             quiet=quiet,
             progress=out.progress,
             allow_outside=allow_outside,
+            known=out.known,
         )
         text = f"{result['status']}: {result['steps']} steps to t = {result['time']:g}, {result['output']}"
         out.answer(result, "\n".join([text, *result.get("pictures", ())]))

@@ -7,7 +7,7 @@ import sys
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 FAILED, BAD_INPUT, NOT_INSTALLED, INTERRUPTED = 1, 2, 3, 130
@@ -23,12 +23,17 @@ def answered() -> bool:
 
 @dataclass(slots=True)
 class Console:
-    """The streams of one command. json, verbose, quiet: its options of these names; code: its exit code."""
+    """The streams of one command.
+
+    json, verbose, quiet: its options of these names; code: its exit code; known: what of its result is known already,
+    told with the errors of a command that fails on its way.
+    """
 
     json: bool = False
     verbose: bool = False
     quiet: bool = False
     code: int = 0
+    known: dict[str, Any] = field(default_factory=dict)
 
     @property
     def progress(self) -> bool:
@@ -97,4 +102,5 @@ def _fail(console: Console, code: int, lines: list[str]) -> None:
     console.code = code
     print("\n".join(lines), file=sys.stderr)
     if console.json and not answered():
-        console.answer({"status": _STATUS[code], "errors": lines})
+        known = console.known if code in (FAILED, INTERRUPTED) else {}
+        console.answer({**known, "status": _STATUS[code], "errors": lines})

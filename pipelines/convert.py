@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from zrno.pipelines.merge import merge
-from zrno.translators import Model, Report, read, settings, write
+from zrno.translators import Model, Report, load_settings, read, write
 from zrno.translators.convert import to_particles
-from zrno.translators.yaml_marks import Place
+from zrno.translators.settings import Settings
 
 
 def convert(
@@ -20,8 +20,7 @@ def convert(
     particles: str | None = None,
     spacing: float | None = None,
     parts: Sequence[str | int] = (),
-    settings_file: Path | None = None,
-    overrides: Mapping[str, Any] | None = None,
+    settings: Settings | None = None,
     numbers: Mapping[str, float] | None = None,
     dialect: str | None = None,
     strict: bool = False,
@@ -29,33 +28,11 @@ def convert(
 ) -> dict[str, Any]:
     """Translate files; returns the keys of `zrno convert --json` and `notes`.
 
-    A mesh becomes particles where the target is a particle deck: particles, spacing, parts, settings_file and overrides
-    (settings by dotted key) say how. numbers: parameters of a .geo script. dialect: of the .mcm that is written.
-    strict: what the target cannot say is an error. allow_outside: files that a source includes may stand outside its
-    folder. Raises InputError and ValueError; nothing is written then.
+    A mesh becomes particles where the target is a particle deck: particles, spacing, parts and settings say how.
+    numbers: parameters of a .geo script. dialect: of the .mcm that is written. strict: what the target cannot say is
+    an error. allow_outside: files that a source includes may stand outside its folder. Raises InputError and
+    ValueError; nothing is written then.
     """
-    return translate(
-        sources, target, particles=particles, spacing=spacing, parts=parts, settings_file=settings_file,
-        overrides=overrides, numbers=numbers, dialect=dialect, strict=strict, allow_outside=allow_outside,
-    )[0]  # fmt: skip
-
-
-def translate(
-    sources: Sequence[Path],
-    target: Path,
-    *,
-    particles: str | None = None,
-    spacing: float | None = None,
-    parts: Sequence[str | int] = (),
-    settings_file: Path | None = None,
-    overrides: Mapping[str, Any] | None = None,
-    places: Mapping[str, tuple[Place, Place]] | None = None,
-    numbers: Mapping[str, float] | None = None,
-    dialect: str | None = None,
-    strict: bool = False,
-    allow_outside: bool = False,
-) -> tuple[dict[str, Any], settings.Settings | None]:
-    """What `convert` does, and the settings that particles were made by. places: of the overrides (`settings.load`)."""
     model = merge([_read(source, numbers, allow_outside=allow_outside) for source in sources])
     if model.incomplete:
         raise ValueError("nothing can be made of a source that lacks what it names: " + "; ".join(model.incomplete[:5]))
@@ -65,23 +42,22 @@ def translate(
         report.notes.append(f"{len(sources)} sources merged: ids of the second and later ones are offset")
     deck = target.suffix.lower() == ".mcm"
     makes_particles = deck and model.particles is None
-    analysis = None
     if makes_particles:
-        analysis = settings.load(settings_file, overrides=overrides, places=places)
-        model, made = to_particles(model, analysis, particles or "solids", spacing, list(parts) or None)
+        model, made = to_particles(
+            model, settings or load_settings(), particles or "solids", spacing, list(parts) or None
+        )
         report.extend(made)
-    elif particles or spacing or parts or settings_file or overrides:
+    elif particles or spacing or parts or settings:
         raise ValueError("--part, --particles, --spacing and --settings make a particle deck (.mcm) of a mesh")
     if dialect is not None and not deck:
         raise ValueError(f"{target}: a dialect is for .mcm decks")
     report.extend(_write(model, target, {} if dialect is None else {"dialect": dialect}, report if strict else None))
-    result = {
+    return {
         "source": source,
         "target": model.summary() | {"format": target.suffix.lower().lstrip(".")},
         **report.as_dict(),
         "notes": report.notes,
     }
-    return result, analysis
 
 
 def losses(result: Mapping[str, Any], *kinds: str) -> list[str]:
@@ -96,12 +72,19 @@ def report_text(result: Mapping[str, Any]) -> str:
 
 def _read(path: Path, numbers: Mapping[str, float] | None, *, allow_outside: bool) -> Model:
     if not numbers:
-        return read(path, allow_outside=allow_outside)
+        model = read(path, paired=True, allow_outside=allow_outside)
+        return model if half_of_a_pair(model) else read(path, allow_outside=allow_outside)
     if path.suffix.lower() != ".geo":
         raise ValueError(f"{path}: numbers are parameters of a .geo script")
     from zrno.translators.gmsh.geo import read as read_geo
 
     return read_geo(path, numbers=numbers)
+
+
+def half_of_a_pair(model: Model) -> bool:
+    """Whether a particle deck is sound as half of a coupled pair alone: its last material owns no particle."""
+    owners = model.particles
+    return owners is None or not model.materials or not (owners.material == max(model.materials)).any()
 
 
 def _write(model: Model, target: Path, options: dict[str, Any], strict: Report | None) -> Report:

@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from zrno.pipelines.convert import translate
+from zrno.pipelines.convert import convert
 from zrno.pipelines.options import control_places
 from zrno.pipelines.scene import Scene
-from zrno.translators import Model, read
+from zrno.translators import Model, load_settings, read
 from zrno.translators.settings import Settings
 from zrno.translators.text import MAX_FAULTS, InputError
 from zrno.translators.yaml_marks import Place
@@ -76,15 +76,14 @@ def drafts(scene: Scene, folder: Path, *, publishing: bool, allow_outside: bool 
             where = tempfile.TemporaryDirectory(prefix=".zrno-", dir=target.parent if publishing else None)
             path = Path(stack.enter_context(where)) / target.name
             try:
-                result, settings = translate(
+                settings = _settings(scene, i, folder)
+                result = convert(
                     [folder / mesh.source],
                     path,
                     particles=mesh.particles,
                     spacing=mesh.spacing,
                     parts=mesh.part,
-                    settings_file=None if mesh.settings is None else folder / mesh.settings,
-                    overrides=mesh.set,
-                    places=scene.places(i),
+                    settings=settings,
                     numbers=mesh.numbers,
                     dialect=mesh.dialect,
                     allow_outside=allow_outside,
@@ -98,3 +97,13 @@ def drafts(scene: Scene, folder: Path, *, publishing: bool, allow_outside: bool 
         if faults:
             raise InputError(sorted(set(faults))[:MAX_FAULTS])
         yield made
+
+
+def _settings(scene: Scene, i: int, folder: Path) -> Settings | None:
+    """The settings of a mesh's deck; None where the scene gives none, and none are needed."""
+    mesh = scene.meshes[i]
+    file = None if mesh.settings is None else folder / mesh.settings
+    fills = mesh.target.lower().endswith(".mcm") and not mesh.source.lower().endswith(".mcm")
+    if file is None and not mesh.set and not fills:
+        return None
+    return load_settings(file, overrides=mesh.set, places=scene.places(i))

@@ -50,6 +50,11 @@ class Result:
         """The consistent system of units ("mm-ms-g"), None where the run did not say."""
         return self.manifest.get("units")
 
+    @property
+    def dimension(self) -> int:
+        """1, 2 (plane strain) or 3; 3 where the run did not say."""
+        return int(self.manifest.get("dimension") or 3)
+
     @cached_property
     def _history(self) -> tuple[dict[str, NDArray[Any]], dict[str, str]]:
         path = self.directory / HISTORY

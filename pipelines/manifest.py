@@ -30,7 +30,8 @@ def digests(paths: Iterable[Path | str]) -> dict[str, str]:
 class Manifest:
     """run.json of a result folder: written when the run starts (status "running") and with each `update`.
 
-    inputs: SHA-256 by file; options: every option after defaults; units: a consistent system ("mm-ms-g") or None.
+    inputs: SHA-256 by file; options: every option after defaults; units: a consistent system ("mm-ms-g") or None;
+    dimension: 1, 2 or 3.
     """
 
     def __init__(
@@ -42,12 +43,14 @@ class Manifest:
         threads: int,
         title: str = "",
         units: str | None = None,
+        dimension: int = 3,
     ) -> None:
         self._path = Path(directory) / FILE
         self.data: dict[str, Any] = {
             "status": "running",
             "title": title,
             "units": units,
+            "dimension": dimension,
             "version": version(),
             "git_hash": git_hash(),
             "inputs": dict(inputs),

@@ -28,3 +28,6 @@ class Solver(Protocol):
 
     def checkpoint(self) -> Mapping[str, Any]:
         """All that a resumed run needs: arrays, numbers, strings by name."""
+
+    def energy_report(self) -> Mapping[str, float]:
+        """Energies, and `balance_error`: what was made or lost since the start, relative to the largest of them."""

@@ -8,7 +8,8 @@ from typing import Any
 
 from zrno.pipelines.scene import OF_EVERY_MESH, Scene, option_places
 from zrno.translators.model import Model
-from zrno.translators.settings import TABLE, Settings
+from zrno.translators.setting_table import TABLE
+from zrno.translators.settings import Settings
 from zrno.translators.settings import load as load_settings
 from zrno.translators.text import Fault, InputError
 from zrno.translators.yaml_marks import Place, did_you_mean, parse_value

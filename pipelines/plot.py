@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from zrno.pipelines.load import load
+from zrno.pipelines.load import Result, load
 from zrno.pipelines.quantities import quantity, unknown
 from zrno.pipelines.replacing import replacing
 from zrno.translators.text import Fault, InputError
@@ -39,7 +39,7 @@ def plot(directory: Path | str, *, output: Path | str | None = None, quantities:
         raise ValueError(f"{target} is not a plot: give {', '.join(_FORMATS)}")
     panels = [_panel(name, history) for name in quantities or _PANELS]
     target.parent.mkdir(parents=True, exist_ok=True)
-    _draw(target, panels, history, result.history_units, title=result.title, system=result.units)
+    _draw(target, panels, result)
     return target
 
 
@@ -57,38 +57,35 @@ def _panel(name: str, history: Mapping[str, NDArray[Any]]) -> tuple[str, list[st
 def _draw(
     target: Path,
     panels: Sequence[tuple[str, Sequence[str]]],
-    history: Mapping[str, NDArray[Any]],
-    units: Mapping[str, str],
-    *,
-    title: str,
-    system: str | None,
+    result: Result,
 ) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
+    history = result.history
     figure = Figure(figsize=(8, 0.7 + 2.3 * len(panels)), layout="constrained")
     FigureCanvasAgg(figure)
-    figure.suptitle(title)
+    figure.suptitle(result.title)
     axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
     for axis, (heading, columns) in zip(axes, panels, strict=True):
         for i, column in enumerate(columns):  # the first on top: of momenta and forces the others are often zero
             style = {"color": _COLOURS[i], "linewidth": 1.4, "zorder": 3 - 0.1 * i}
             axis.plot(history["time"], history[column], label=quantity(column).label, **style)
-        axis.set_ylabel(_labelled(heading, columns[0], units, system))
+        axis.set_ylabel(_labelled(heading, columns[0], result))
         axis.grid(color="#dddddd", linewidth=0.6)
         axis.set_axisbelow(True)
         axis.ticklabel_format(axis="y", useMathText=True, scilimits=(-3, 4))
         axis.spines[["top", "right"]].set_visible(False)
         if len(columns) > 1:
             axis.legend(frameon=False, fontsize="small", loc="center left", bbox_to_anchor=(1.0, 0.5))
-    axes[-1].set_xlabel(_labelled("time", "time", units, system))
+    axes[-1].set_xlabel(_labelled("time", "time", result))
     axes[-1].set_xlim(*_limits(history["time"]))
     with replacing(target) as temporary:
         figure.savefig(temporary, dpi=150)
 
 
-def _labelled(heading: str, column: str, units: Mapping[str, str], system: str | None) -> str:
-    unit = quantity(column, system).unit or units.get(column, "")
+def _labelled(heading: str, column: str, result: Result) -> str:
+    unit = quantity(column, result.units, result.dimension).unit or result.history_units.get(column, "")
     return f"{heading} [{unit}]" if unit else heading
 
 

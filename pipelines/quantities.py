@@ -34,12 +34,13 @@ class Quantity:
         return f"{self.label} [{self.unit}]" if self.unit else self.label
 
 
-def quantity(name: str, system: str | None = None) -> Quantity:
+def quantity(name: str, system: str | None = None, dimension: int = 3) -> Quantity:
     """Label and unit of an array, a component of one (`velocity_x`) or a column.
 
-    system: a consistent system of units ("mm-ms-g"), None when it is not known; a name that is not known labels itself.
+    system: a consistent system of units ("mm-ms-g"), None when it is not known; dimension: of the run. A name that is
+    not known labels itself.
     """
-    units = SYSTEMS[system].labels() if system in SYSTEMS else {}
+    units = SYSTEMS[system].labels(dimension) if system in SYSTEMS else {}
     base, _, axis = name.rpartition("_")
     component = axis in (*_AXES[3], *_AXES[6])
     label = _LABELS.get(name, name.replace("_", " "))

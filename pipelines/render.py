@@ -105,7 +105,7 @@ def _pictures(
         seen = extent(arrays["position"], float(arrays["radius"].max()), along)
         box = Extent(np.minimum(box.low, seen.low), np.maximum(box.high, seen.high))
         count = max(count, len(values))
-    shown = quantity(field, result.units)
+    shown = quantity(field, result.units, result.dimension)
     when = quantity("time", result.units).unit
     scale = scale_for(least, most, str(shown))
     stage = Stage(size, along, box, scale, title=result.title, flat=is_flat(spread), fine=count * len(frames) <= FINE)

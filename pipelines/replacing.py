@@ -28,7 +28,7 @@ def replacing(target: Path | str) -> Iterator[Path]:
 
 
 def remove_left_overs(directory: Path | str) -> None:
-    """Remove the temporary files of processes that were killed while they wrote into a folder."""
+    """Remove the temporary files of processes that were killed while they wrote into a folder, whichever way."""
     for path in Path(directory).glob(".*"):
-        if re.match(r"\.\d+\.", path.name):
+        if re.match(r"\.\d+\.|\..+\.\d+\.tmp$", path.name):
             path.unlink()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import sys
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import contextmanager
@@ -10,8 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from zrno.pipelines import options as command_options
+from zrno.pipelines.balance import Balance
 from zrno.pipelines.checkpoint import Checkpointer
-from zrno.pipelines.convert import report_text
+from zrno.pipelines.convert import losses, report_text
+from zrno.pipelines.errors import Missing, RunFailed
 from zrno.pipelines.history import History
 from zrno.pipelines.interrupt import held_back
 from zrno.pipelines.manifest import Manifest, digests
@@ -44,23 +47,27 @@ def run(
     quiet: bool = True,
     progress: bool = False,
     allow_outside: bool = False,
+    known: dict[str, Any] | None = None,
 ) -> dict[str, Any]:
     """Run one particle deck or a scene; returns the keys of `zrno run --json`.
 
     output: result folder (default: the input's name and `_results`, in the working folder). threads: None for all, or
     one for few particles. until: stop at this simulated time. resume: go on from the newest checkpoint of the folder,
     if it has one. options: by dotted key, as `--set` takes them (`compat=original`, scene keys, settings). quiet: no
-    message on stderr; progress: a bar there. allow_outside: files that a scene's meshes include may stand outside their
-    folders.
+    warnings on stderr at the end; progress: a bar there. known: takes the
+    same keys as they become known, also of a run that fails. allow_outside: files that a scene's meshes include may
+    stand outside their folders.
 
-    Raises InputError for bad input (nothing is written then), `Diverged` for a run that cannot go on, KeyboardInterrupt
-    after the checkpoint of an interrupted one.
+    Raises InputError for bad input (nothing is written then), `Diverged` or `RunFailed` for a run that cannot go on,
+    KeyboardInterrupt after the checkpoint of an interrupted one.
     """
     chosen = command_options.split(options or {})
     if until is not None and not until >= 0.0:
         raise InputError([Fault("--until", 1, 1, "the run cannot end before it starts", str(until), "0 or more")])
     paths = [Path(p) for p in inputs]
     directory = Path(output) if output is not None else Path(f"{paths[0].stem}_results")
+    known = {} if known is None else known
+    known |= {"steps": 0, "time": 0.0}
     ready = prepare(paths, chosen, directory, threads=threads, resume=resume, allow_outside=allow_outside)
     scene, deck, model, solver, state = ready.scene, ready.deck, ready.model, ready.solver, ready.state
 
@@ -72,7 +79,8 @@ def run(
 
     series, history, checkpointer = _observers(model, scene, directory, end, ready.digest, resume=state is not None)
     bar = Progress(end, show=progress)
-    watchers: list[Observer] = [series, history, checkpointer, bar]
+    balance = Balance(interval=history.interval, step_factor=solver.problem.step_factor)
+    watchers: list[Observer] = [series, history, checkpointer, balance, bar]
     result: dict[str, Any] = {}
     with _log_file(directory, append=state is not None):
         manifest = Manifest(
@@ -82,15 +90,14 @@ def run(
             threads=solver.threads,
             title=(scene.title if scene else "") or model.title,
             units=scene.units if scene else None,
+            dimension=solver.problem.dimension,
         )
         for report in ready.made:
             for line in report_text(report).splitlines():
                 log.info("making %s: %s", deck.name, line)
         for warning in model.warnings:
             log.warning(warning)
-        model.warnings += [
-            f"dropped: {i['count']} {i['what']} - {i['where']}" for m in ready.made for i in m["dropped"]
-        ]
+        model.warnings += [line for report in ready.made for line in losses(report, "dropped")]
         log.info("%s: %d particles, end time %g; built for %s", deck.name, solver.n, end, solver.kernels())
         if state is not None:
             log.info("resumed at t = %g, step %d", solver.time, solver.step)
@@ -109,6 +116,8 @@ def run(
             raise
         except Exception as error:
             log.error("%s", error)
+            if isinstance(error, OSError):  # a full disk is no bad input
+                raise RunFailed(str(error)) from error
             raise
         finally:
             bar.finish(solver)
@@ -128,6 +137,11 @@ def run(
                 "output": str(directory),
                 "warnings": list(model.warnings),
             }
+            unbalanced = balance.warning(solver)
+            if unbalanced is not None:
+                log.warning(unbalanced)
+                result["warnings"].append(unbalanced)
+            known |= result
             manifest.update(**result)
         log.info(
             "done: %d steps to t = %g in %.2f s (%.3g particle-steps/s, compiling %.1f s), energy balance error %.2e",
@@ -136,6 +150,9 @@ def run(
         )  # fmt: skip
         result["pictures"] = _pictures(scene, directory, result["warnings"])
         manifest.update(warnings=result["warnings"], pictures=result["pictures"])
+    if not quiet:
+        for warning in result["warnings"]:
+            print(f"warning: {warning}", file=sys.stderr)
     return result
 
 
@@ -147,7 +164,7 @@ def _observers(
     frames = (scene.output.every if scene else None) or control.output_interval or max(end, 1e-300) / FRAMES
     rows = control.history_interval or frames / ROWS
     saves = scene.checkpoint.every if scene and scene.checkpoint else frames
-    units = scene.system.labels() if scene and scene.system else {}
+    units = scene.system.labels(control.dimension) if scene and scene.system else {}
     return (
         ResultSeries(
             directory,
@@ -180,7 +197,6 @@ def _pictures(scene: Scene | None, directory: Path, warnings: list[str]) -> list
     """The pictures that a scene asks for. The run is done whether they can be drawn or not: that is a warning."""
     drawn: list[str] = []
     for i, picture in enumerate(scene.render if scene else ()):
-        from zrno.pipelines.errors import Missing
         from zrno.pipelines.render import render
 
         try:

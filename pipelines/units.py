@@ -17,20 +17,26 @@ class Units:
     energy: str
     gravity: float
 
-    def labels(self) -> dict[str, str]:
-        """The unit of every quantity of the result folder that has one, by its name in frames and in the history."""
+    def labels(self, dimension: int = 3) -> dict[str, str]:
+        """The unit of every quantity of the result folder that has one, by its name in frames and in the history.
+
+        dimension: of the run. In plane strain masses, energies and forces are those of a slice of unit thickness, in
+        one dimension those of a bar of unit cross-section.
+        """
+        per = {3: "", 2: f"/{self.length}", 1: f"/{self.length}^2"}[dimension]
         speed = f"{self.length}/{self.time}"
-        momentum = f"{self.mass} {speed}"
+        momentum = f"{self.mass}{per} {speed}"
+        energies = ("kinetic", "internal", "dissipated", "external_work", "contact_energy")
         return {
             **dict.fromkeys(("time", "dt"), self.time),
             **dict.fromkeys(("position", "displacement", "radius"), self.length),
             "velocity": speed,
             "density": f"{self.mass}/{self.length}^3",
-            "mass": self.mass,
+            "mass": f"{self.mass}{per}",
             **dict.fromkeys(("pressure", "stress", "von_mises"), self.stress),
-            **dict.fromkeys(("kinetic", "internal", "dissipated", "external_work", "contact_energy"), self.energy),
+            **dict.fromkeys(energies, f"{self.energy}{per}"),
             **{f"momentum_{axis}": momentum for axis in "xyz"},
-            **{f"contact_force_{axis}": self.force for axis in "xyz"},
+            **{f"contact_force_{axis}": f"{self.force}{per}" for axis in "xyz"},
         }
 
 

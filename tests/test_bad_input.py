@@ -216,6 +216,7 @@ def scene(folder: Path, plate_msh: str) -> Callable[..., str]:
     [
         (("end_time: 0.1", "end_tme: 3"), "plate.yaml:1:1: error: unknown key end_tme"),
         (("spacing: 0.25", "spacing: 0.25, set: {end_tme: 3}"), "scene.yaml:1:92: error: unknown key end_tme"),
+        (("settings: plate.yaml, ", ""), "scene.yaml:1:10: error: a part has no material (plate)"),
         (("spacing: 0.25", "part: wing"), "scene.yaml:1:10: error: the mesh has no part wing"),
         (("  plate: {law", "  wing: {law"), "plate.yaml:3:3: error: materials of a part that the mesh does not have"),
         (("4 0 1 0", "4 0 x 0"), "plate.msh:14:5: error: "),
@@ -290,7 +291,7 @@ def test_a_refused_conversion_writes_nothing(
     ("name", "message"),
     [
         ("kupa1.mcm", ":869:5: error: velocity card past the last particle 802 (2700)"),
-        ("kipkupa.mcm", ":31:10: error: material model 4, generalised cap, is not supported"),
+        ("kipkupa.mcm", ":41:1: error: material 2 owns no particle"),
     ],
 )
 def test_decks_of_the_original_program_that_are_not_for_a_run_alone(

@@ -55,6 +55,11 @@ class ParticleControl:
     planes: list[tuple[int, float]] | None = None
     contact_option: int = 1
     contact_laws: list[tuple[float, float]] = field(default_factory=list)
+    birth_death: int = 0
+    plane_particle: int = 0
+    birth_range: tuple[int, int] | None = None
+    birth_plane: tuple[float, float, float, int] | None = None
+    death_plane: tuple[float, float, float, int] | None = None
     places: dict[str, tuple[int, int]] = field(default_factory=dict, compare=False)
 
 

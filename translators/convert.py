@@ -1,79 +1,83 @@
-"""From a mesh and settings to a particle model: what `zrno convert` does between reading and writing."""
+"""From a mesh and settings to a particle model: what `zrno convert` does between reading and writing an .mcm deck."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
-from zrno.translators.model import Material, Model, Part, ParticleControl, Particles
-from zrno.translators.particles import Filling, chosen_parts, copy_nodes, fill
+from zrno.translators import held
+from zrno.translators.law_maps import as_known
+from zrno.translators.materials import materials_of, settings_of
+from zrno.translators.mcm.cards import LAWS as MCM_LAWS
+from zrno.translators.model import PARTICLE_FAMILIES, Eos, Material, Model, Part, ParticleControl, Particles
+from zrno.translators.particles import Filling, chosen_parts, copy_nodes, fill, on_shells, own_particles
 from zrno.translators.real_text import real_text
 from zrno.translators.report import Report
-from zrno.translators.settings import BOUNDARY_CODES, Settings
+from zrno.translators.sections import thickness_of
+from zrno.translators.settings import Settings
 
 FRAMES, ROWS = 20, 200  # of output and history where the settings give no interval
 _NEAREST_DISTANCE = 2
+_NONE_WHERE_0 = ("failure_strain",)
+_KNOWN = {name: law.parameters for name, law in MCM_LAWS.items()}
 
 
 def to_particles(
     model: Model,
     settings: Settings,
-    particles: str = "solids",
+    particles: str | None = None,
     spacing: float | None = None,
     parts: Sequence[int | str] | None = None,
 ) -> tuple[Model, Report]:
     """Make a particle model of a mesh.
 
-    particles: "solids" fills volumes (and the areas of a flat mesh) by a lattice, "shells" the areas of a flat mesh
-    alone, "nodes" takes the nodes. spacing: of the lattice, by default the mesh's median edge length. parts: names or
-    numbers; by default all. Each part becomes a material of the deck, numbered from 1 in the mesh's order.
+    particles: "solids" fills volumes (and the areas of a flat mesh) by a lattice, "shells" covers areas, "nodes" takes
+    the nodes; None: the particles that the mesh has itself, else as "solids". spacing: of the lattice, by default the
+    mesh's median edge length. parts: names or numbers; by default all that can become particles. Each part becomes a
+    material of the deck, numbered from 1 in the mesh's order; what the mesh says of materials, constraints, initial
+    velocities, gravity and times is taken over, the settings overrule it.
     Raises InputError for settings that the mesh cannot take, ValueError for a mesh that cannot become particles.
     """
-    chosen = chosen_parts(model, None if parts is None else [_part_number(model, part) for part in parts])
-    data = _materials_of(model, chosen, settings)
     report = Report()
-    filling = _filled(model, particles, spacing, chosen)
+    asked = None if parts is None else [part_number(model, part) for part in parts]
+    chosen = _parts(model, asked, particles)
+    materials = materials_of(model, chosen, settings)
+    chosen = _with_laws(model, chosen, materials, report)
+    filling = _filled(model, settings, particles, spacing, chosen)
     dimension = 2 if model.dimension == 2 else 3
     if settings["dimension"] not in (None, dimension):
         settings.fault(("dimension",), "the mesh has another dimension", settings["dimension"], str(dimension))
         settings.stop()
     target = Model(title=_title(model.title), format="mcm", version="2", dimension=dimension)
     numbers = {part: number for number, part in enumerate(chosen, 1)}
-    count = len(filling.x)
-    place = np.zeros(max(chosen) + 1, np.int64)
-    place[list(numbers)] = list(numbers.values())
-    material = place[filling.part]
-    velocity = np.array([data[part]["velocity"] for part in chosen])[material - 1]
-    bc = np.array([BOUNDARY_CODES[data[part]["bc"]] for part in chosen])[material - 1]
-    target.particles = Particles(filling.x, material, bc, velocity if velocity.any() else None)
-    for part, number in numbers.items():
-        target.materials[number] = _material(model.parts[part], number, filling, data[part], settings)
-    if particles == "nodes":
-        density = np.array([data[part]["density"] for part in chosen])[material - 1]
-        target.particles.mass = filling.volume * density
-    target.particle_control = _control(target, settings, dimension)
-    _report_lost(model, chosen, particles, report)
-    report.notes.append(f"{count} particles in {len(chosen)} part(s)")
-    if not settings.gives("end_time"):
-        report.notes.append(f"end_time is not set: {settings['end_time']:g}")
+    material = np.array(chosen).argsort().argsort()  # of each part its place among the sorted ones
+    place = np.searchsorted(np.sort(chosen), filling.part)
+    owner = np.empty(len(chosen), np.int64)
+    owner[material] = np.arange(1, len(chosen) + 1)
+    number = owner[place]
+    entries = [settings_of(settings, model, part)[1] for part in chosen]
+    bc, velocity = held.of_particles(model, filling, chosen, entries, report)
+    target.particles = Particles(filling.x, number, bc, velocity if velocity.any() else None)
+    mass = _masses(filling, np.array([materials[part].density for part in chosen])[number - 1])
+    h = np.zeros(len(chosen))
+    for part, k in numbers.items():
+        own = mass[number == k]
+        h[k - 1] = _smoothing_length(model, part, filling, settings)
+        target.materials[k] = _material(model.parts[part], k, materials[part], own, h[k - 1], settings, target)
+    if any(np.ptp(mass[number == k]) > 1e-9 * mass[number == k].max() for k in numbers.values()):
+        target.particles.mass = mass
+    target.particle_control = _control(model, target, settings, dimension, report)
+    _report_lost(model, chosen, filling, report)
+    report.notes.append(f"{len(filling.x)} particles in {len(chosen)} part(s)")
     if particles != "nodes" and settings["step_option"] == _NEAREST_DISTANCE and len(chosen) > 1:
         report.notes.append("step_option 2 takes the nearest particles of all bodies: touching bodies shorten the step")
     return target, report
 
 
-def _filled(model: Model, particles: str, spacing: float | None, parts: list[int]) -> Filling:
-    if particles == "nodes":
-        return copy_nodes(model, parts)
-    if particles == "shells" and model.dimension != 2:
-        raise ValueError("particles of shells: the mesh is not flat (constant z); expected areas in a plane")
-    if particles not in ("solids", "shells"):
-        raise ValueError(f"particles of {particles}; expected solids, shells or nodes")
-    return fill(model, spacing, parts=parts)
-
-
-def _part_number(model: Model, asked: int | str) -> int:
+def part_number(model: Model, asked: int | str) -> int:
+    """The number of a part by its name or number; ValueError with what there is."""
     for number, part in model.parts.items():
         if asked == number or str(asked) in (part.name, str(number)):
             return number
@@ -81,60 +85,126 @@ def _part_number(model: Model, asked: int | str) -> int:
     raise ValueError(f"the mesh has no part {asked}; it has: {known or 'none'}")
 
 
-def _materials_of(model: Model, chosen: list[int], settings: Settings) -> dict[int, dict[str, Any]]:
-    """The settings of each part's material, by name or number; all mismatches are faults of the settings."""
-    names = {key for number, part in model.parts.items() for key in (part.name, str(number)) if key}
-    for group in ("materials", "contact_laws"):
-        for name in settings[group]:
-            if name not in names:
-                expected = "one of " + ", ".join(sorted(names))
-                settings.fault((group, name), f"{group} of a part that the mesh does not have", name, expected)
-    data: dict[int, dict[str, Any]] = {}
-    for number in chosen:
-        part = model.parts[number]
-        found = settings["materials"].get(part.name) or settings["materials"].get(str(number))
-        if found is None:
-            name = part.name or str(number)
-            settings.fault(
-                ("materials",), "a part has no material", name, f"materials: {{{name}: {{law: elastic, ...}}}}"
-            )
-        else:
-            data[number] = found
-    settings.stop()
-    return data
+def _parts(model: Model, asked: list[int] | None, particles: str | None) -> list[int]:
+    """The parts asked for; by default those that are particles already, where there are such, else all."""
+    if asked is None and particles is None:
+        own = {int(p) for b in model.blocks if b.family in PARTICLE_FAMILIES for p in np.unique(b.part)}
+        asked = [part for part in model.parts if part in own] or None
+    return chosen_parts(model, asked)
 
 
-def _material(part: Part, number: int, filling: Filling, data: dict[str, Any], settings: Settings) -> Material:
-    names = ["E", "nu"]
-    if data["law"] == "von_mises":
-        names += ["yield_stress", "tangent_modulus", "beta"]
-        names += ["failure_strain"] if data["failure_strain"] is not None else []
-    density = float(data["density"])
+def _with_laws(model: Model, chosen: list[int], materials: dict[int, Material], report: Report) -> list[int]:
+    """The parts whose law the deck has, or one near it, which then stands in `materials`; the others are dropped."""
+    kept = []
+    for part in chosen:
+        own = materials[part]
+        eos = equation_of(model, part, own)
+        nearest = as_known(own, _KNOWN, model.curves, eos, report)
+        name = model.parts[part].name or str(part)
+        if nearest is None:
+            count = sum(int((block.part == part).sum()) for block in model.blocks)
+            report.drop(f"elements of part {name}", count, f"an .mcm deck has no law like {own.law or 'its material'}")
+            continue
+        materials[part] = nearest
+        kept.append(part)
+    if not kept:
+        laws = ", ".join(sorted({materials[part].law or "none known" for part in chosen}))
+        raise ValueError(f"no part is left: an .mcm deck has no law like {laws}; settings `materials` can give one")
+    return kept
+
+
+def equation_of(model: Model, part: int, material: Material) -> Eos | None:
+    """The equation of state of a part: its own, or its material's."""
+    number = model.parts[part].eos or material.eos
+    return None if number is None else model.equations_of_state.get(number)
+
+
+def _filled(
+    model: Model, settings: Settings, particles: str | None, spacing: float | None, parts: list[int]
+) -> Filling:
+    own = [any(b.family in PARTICLE_FAMILIES and (b.part == part).any() for b in model.blocks) for part in parts]
+    if all(own):
+        return own_particles(model, parts)
+    if any(own):
+        mine = ", ".join(model.parts[p].name or str(p) for p, has in zip(parts, own, strict=True) if has)
+        raise ValueError(
+            f"parts that are particles already ({mine}) together with meshed ones; expected one or the other"
+        )
+    if particles == "nodes":
+        thickness = {part: thickness_of(model, part, settings) for part in parts} if _in_space(model, parts) else None
+        return copy_nodes(model, parts, thickness)
+    if particles == "shells" and model.dimension != 2:
+        return on_shells(
+            model, spacing, parts=parts, thickness={part: thickness_of(model, part, settings) for part in parts}
+        )
+    if particles not in (None, "solids", "shells"):
+        raise ValueError(f"particles of {particles}; expected solids, shells or nodes")
+    return fill(model, spacing, parts=parts)
+
+
+def _in_space(model: Model, parts: list[int]) -> bool:
+    """Whether some of the parts are shells in space."""
+    areas = [b for b in model.blocks if b.kind.startswith(("tri", "quad")) and np.isin(b.part, parts).any()]
+    return model.dimension == 3 and bool(areas)
+
+
+def _masses(filling: Filling, density: Any) -> Any:
+    """Mass of each particle: the mesh's own, else its volume's, else that of a cube of the spacing."""
+    spacing = np.array([filling.spacing[part] for part in filling.part.tolist()]) if filling.mass is not None else None
+    mass = filling.volume * density
+    if spacing is not None and filling.mass is not None:
+        mass = np.where(np.isnan(filling.mass), np.where(np.isnan(mass), density * spacing**3, mass), filling.mass)
+    return mass
+
+
+def _smoothing_length(model: Model, part: int, filling: Filling, settings: Settings) -> float:
+    """What the settings say, else the part's section, else the settings' default; a length that the deck holds."""
+    section = model.sections.get(model.parts[part].section or 0)
+    own = {} if section is None else section.parameters
+    factor = settings["h_factor"]
+    h = factor * filling.spacing[part]
+    if not settings.gives("h_factor"):
+        h = own.get("h") or own.get("h_factor", factor) * filling.spacing[part]
+    return float(real_text(h, 10)[0])
+
+
+def _material(
+    part: Part, number: int, own: Material, mass: Any, h: float, settings: Settings, target: Model
+) -> Material:
+    viscosity = settings["viscosity"]
     return Material(
         number,
         part.name or f"part {part.id}",
-        law=str(data["law"]),
-        density=density,
-        parameters={name: float(data[name]) for name in names},
-        mass=float(f"{density * filling.volumes[part.id]:.14g}"),  # 8.1, not the round-off of its quadrature
-        h=float(
-            real_text(settings["h_factor"] * filling.spacing[part.id], 10)[0]
-        ),  # a choice: one the deck holds exactly
-        viscosity_quadratic=settings["viscosity"]["quadratic"] or None,
-        viscosity_linear=settings["viscosity"]["linear"] or None,
+        law=own.law,
+        density=own.density,
+        parameters={key: value for key, value in own.parameters.items() if value or key not in _NONE_WHERE_0},
+        mass=float(f"{float(mass.sum()):.14g}"),  # 8.1, not the round-off of its quadrature
+        h=h,
+        viscosity_quadratic=viscosity["quadratic"] or own.viscosity_quadratic,
+        viscosity_linear=viscosity["linear"] or own.viscosity_linear,
+        tables=dict(own.tables),
+        eos=own.eos,
     )
 
 
-def _control(target: Model, settings: Settings, dimension: int) -> ParticleControl:
-    end = settings["end_time"]
-    output, history = settings["output_interval"], settings["history_interval"]
+def _control(model: Model, target: Model, settings: Settings, dimension: int, report: Report) -> ParticleControl:
+    analysis = model.analysis
+
+    def said(key: str, own: float | None) -> Any:
+        return settings[key] if settings.gives(key) or own is None else own
+
+    end = said("end_time", analysis.end_time)
+    if not settings.gives("end_time") and analysis.end_time is None:
+        report.notes.append(f"end_time is not set: {end:g}")
+    output, history = said("output_interval", analysis.output_interval), settings["history_interval"]
     friction = settings["friction"]
     laws = {name: (law["strength"], law["exponent"]) for name, law in settings["contact_laws"].items()}
+    gravity = settings["gravity"] if settings.gives("gravity") else held.gravity(model, end, report)
     control = ParticleControl(
         dimension=dimension,
         end_time=end,
-        step_factor=settings["step_factor"],
-        initial_step=settings["initial_step"],
+        step_factor=said("step_factor", analysis.step_factor),
+        initial_step=said("initial_step", analysis.initial_step),
         output_interval=end / FRAMES if output is None else output,
         history_interval=end / ROWS if history is None else history,
         contact=int(settings["contact"] == "potential"),
@@ -143,7 +213,7 @@ def _control(target: Model, settings: Settings, dimension: int) -> ParticleContr
         h_option=settings["h_option"],
         max_neighbours=400,  # the original stops where a count jumps past its table
         friction=None if friction["static"] is None else (friction["static"], friction["kinetic"]),
-        base_acceleration=settings["gravity"] if any(settings["gravity"]) else None,
+        base_acceleration=gravity if any(gravity) else None,
     )
     if control.friction is not None:
         control.dialect = "2019-10"
@@ -159,16 +229,27 @@ def _control(target: Model, settings: Settings, dimension: int) -> ParticleContr
     return control
 
 
-def _report_lost(model: Model, chosen: list[int], particles: str, report: Report) -> None:
+def _report_lost(model: Model, chosen: list[int], filling: Filling, report: Report) -> None:
     """What of the mesh is not in the particle model."""
     left = [part for number, part in model.parts.items() if number not in chosen]
-    report.drop("parts", len(left), "not asked for: " + ", ".join(part.name or str(part.id) for part in left))
+    report.drop("parts", len(left), "not asked for: " + ", ".join(part.name or str(part.id) for part in left[:20]))
     for block in model.blocks:
         lower = int((~np.isin(block.part, [part.id for part in model.parts.values()])).sum())
         report.drop(f"{block.kind} elements", lower, "of lower dimension than the parts: no particles are made of them")
     top = {part.name for part in model.parts.values() if part.name}
     sets = [nodes.name or str(nodes.id) for nodes in model.node_sets if nodes.name not in top]
-    report.drop("node sets", len(sets), "an .mcm deck has none: " + ", ".join(sets))
+    report.drop("node sets", len(sets), "an .mcm deck has none: " + ", ".join(sets[:20]))
+    count: Callable[[Any], int] = len
+    for what, items in (
+        ("element sets", model.element_sets),
+        ("part sets", model.part_sets),
+        ("segment sets", model.segment_sets),
+        ("linear relations", model.equations),
+        ("loads on nodes", model.nodal_loads),
+        ("loads on faces", model.face_loads),
+        ("contacts", model.contacts),
+    ):
+        report.drop(what, count(items), "an .mcm deck has none")
 
 
 def _title(title: str) -> str:

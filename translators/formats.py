@@ -29,10 +29,10 @@ class Format:
 
 FORMATS = (
     Format("mcm", (".mcm",), "zrno.translators.mcm", "zrno.translators.mcm"),
-    Format("msh", (".msh",), "zrno.translators.gmsh.read"),
+    Format("msh", (".msh",), "zrno.translators.gmsh.read", "zrno.translators.gmsh.write"),
     Format("geo", (".geo",), "zrno.translators.gmsh.geo"),
     Format("lsdyna", (".k", ".key", ".dyn"), "zrno.translators.lsdyna", "zrno.translators.lsdyna"),
-    Format("neu", (".neu",), missing="neutral files (.neu) are not read yet"),
+    Format("neu", (".neu",), "zrno.translators.neu"),
     Format("pak", (".dat",), missing="PAK decks are not read yet"),
     Format("vtu", (".vtu",), "zrno.translators.meshio_bridge", "zrno.translators.meshio_bridge"),
 )

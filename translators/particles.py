@@ -1,9 +1,9 @@
-"""Volumes and areas into particles: lattice filling, and nodes as particles."""
+"""Meshes into particles: lattice filling, shells covered, nodes as particles, and the particles that a mesh has."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from zrno.translators.elements import TABLE
 from zrno.translators.geometry import edge_lengths, measures, simplices
-from zrno.translators.model import ElementBlock, Floats, Ints, Model
+from zrno.translators.model import PARTICLE_FAMILIES, ElementBlock, Floats, Ints, Model
+from zrno.translators.surfaces import cover
 
 _CANDIDATES = 2_000_000  # lattice points tested at a time
 _TOLERANCE = 1e-9  # of a simplex: a point on the face between two belongs to the part
@@ -22,7 +23,8 @@ class Filling:
     """Particles of some parts, the parts one after the other.
 
     x: (n, 3); part: (n,) part numbers; volume: (n,) each particle's share of its part's volume (area in 2D, times the
-    unit depth); volumes: of each part, exactly; spacing: mean distance of neighbours by part.
+    unit depth); volumes: of each part, exactly; spacing: mean distance of neighbours by part; node: (n,) the node that
+    a particle is, or -1; mass: (n,) where the mesh gives it, NaN where not.
     """
 
     x: Floats
@@ -30,11 +32,13 @@ class Filling:
     volume: Floats
     volumes: dict[int, float]
     spacing: dict[int, float]
+    node: Ints
+    mass: Floats | None = None
 
 
 def default_spacing(model: Model, parts: Sequence[int] | None = None) -> float:
     """The median edge length of the parts' elements."""
-    blocks = [block for part in chosen_parts(model, parts) for block in _blocks_of(model, part)]
+    blocks = [block for part in chosen_parts(model, parts) for block in _blocks_of(model, part, (2, 3))]
     return float(np.median(np.concatenate([edge_lengths(block, model.xyz) for block in blocks])))
 
 
@@ -75,33 +79,89 @@ def fill(model: Model, spacing: float | None = None, *, parts: Sequence[int] | N
         if not len(x):
             name = model.parts[number].name or str(number)
             raise ValueError(f"part {name}: no particle fits at a spacing of {spacing:g}; expected a finer spacing")
+    x = np.concatenate([x for _, x, _, _ in pieces])
     return Filling(
-        np.concatenate([x for _, x, _, _ in pieces]),
+        x,
         np.concatenate([np.full(len(x), number) for number, x, _, _ in pieces]),
         np.concatenate([np.full(len(x), volume / len(x)) for _, x, _, volume in pieces]),
         {number: volume for number, _, _, volume in pieces},
         {number: step for number, _, step, _ in pieces},
+        np.full(len(x), -1),
     )
 
 
-def copy_nodes(model: Model, parts: Sequence[int] | None = None) -> Filling:
+def on_shells(
+    model: Model, spacing: float | None = None, *, parts: Sequence[int], thickness: Mapping[int, float]
+) -> Filling:
+    """Cover the shells of parts with particles, whose volume is their share of the area times the part's thickness."""
+    spacing = default_spacing(model, parts) if spacing is None else spacing
+    if not spacing > 0:
+        raise ValueError(f"the spacing of particles is {spacing}; expected a positive length")
+    found = [(number, *cover(_blocks_of(model, number, (2,)), model.xyz, spacing)) for number in parts]
+    x = np.concatenate([x for _, x, _ in found])
+    return Filling(
+        x,
+        np.concatenate([np.full(len(x), number) for number, x, _ in found]),
+        np.concatenate([areas * thickness[number] for number, _, areas in found]),
+        {number: math.fsum(areas) * thickness[number] for number, _, areas in found},
+        {number: math.sqrt(math.fsum(areas) / len(areas)) for number, _, areas in found},
+        np.full(len(x), -1),
+    )
+
+
+def own_particles(model: Model, parts: Sequence[int]) -> Filling:
+    """The particles that the mesh itself has, part by part, with their masses and volumes (NaN where it says none)."""
+    from scipy.spatial import cKDTree
+
+    nodes: list[Ints] = []
+    part: list[Ints] = []
+    mass: list[Floats] = []
+    volume: list[Floats] = []
+    spacing, volumes = {}, {}
+    for number in parts:
+        for block in (b for b in model.blocks if b.family in PARTICLE_FAMILIES):
+            mine = block.part == number
+            nodes.append(block.nodes[mine, 0])
+            part.append(block.part[mine])
+            for name, values in (("mass", mass), ("volume", volume)):
+                given = block.data.get(name)
+                own = np.full(int(mine.sum()), np.nan) if given is None else given[mine].astype(float)
+                values.append(np.where(own > 0, own, np.nan))
+        x = model.xyz[np.concatenate([n for n, p in zip(nodes, part, strict=True) if len(p) and p[0] == number])]
+        distance = cKDTree(x).query(x, k=2)[0][:, 1] if len(x) > 1 else np.zeros(1)
+        spacing[number] = float(np.median(distance)) or 1.0
+        volumes[number] = np.nan
+    index = np.concatenate(nodes)
+    return Filling(
+        model.xyz[index].copy(), np.concatenate(part), np.concatenate(volume), volumes, spacing, index,
+        np.concatenate(mass),
+    )  # fmt: skip
+
+
+def copy_nodes(
+    model: Model, parts: Sequence[int] | None = None, thickness: Mapping[int, float] | None = None
+) -> Filling:
     """The nodes of parts as particles, each with its share of the volume of the part's elements round it.
 
-    An element's volume is shared equally by its nodes. A node that several parts share belongs to the first of them;
-    the others' shares grow in proportion, so that each part keeps its volume. The spacing is the median edge length.
+    An element's volume is shared equally by its nodes; a shell's in space is its area times the part's thickness. A
+    node that several parts share belongs to the first of them; the others' shares grow in proportion, so that each part
+    keeps its volume. The spacing is the median edge length.
     """
     chosen = chosen_parts(model, parts)
     owner = np.full(len(model.xyz), -1)
     shares = np.zeros(len(model.xyz))
     volumes, spacing = {}, {}
     for order, number in enumerate(chosen):
-        blocks = _blocks_of(model, number)
-        volumes[number] = _volume(blocks, model.xyz)
-        spacing[number] = float(np.median(np.concatenate([edge_lengths(block, model.xyz) for block in blocks])))
-        around = np.zeros(len(model.xyz))
+        blocks = _blocks_of(model, number, None if thickness is None else (2, 3))
+        around, whole = np.zeros(len(model.xyz)), 0.0
         for block in blocks:
-            share = measures(block, model.xyz) / block.nodes.shape[1]
+            deep = thickness is not None and TABLE[block.kind].dimension == 2 and model.dimension == 3
+            volume = measures(block, model.xyz) * (thickness[number] if deep and thickness else 1.0)
+            whole += math.fsum(volume)
+            share = volume / block.nodes.shape[1]
             around += np.bincount(block.nodes.ravel(), np.repeat(share, block.nodes.shape[1]), len(model.xyz))
+        volumes[number] = whole
+        spacing[number] = float(np.median(np.concatenate([edge_lengths(block, model.xyz) for block in blocks])))
         own = (around > 0) & (owner < 0)
         if not own.any():
             raise ValueError(f"part {model.parts[number].name or number}: all its nodes belong to earlier parts")
@@ -109,26 +169,27 @@ def copy_nodes(model: Model, parts: Sequence[int] | None = None) -> Filling:
         shares[own] = around[own] * (volumes[number] / around[own].sum())
     nodes = np.flatnonzero(owner >= 0)
     nodes = nodes[np.argsort(owner[nodes], kind="stable")]
-    return Filling(model.xyz[nodes].copy(), np.array(chosen)[owner[nodes]], shares[nodes], volumes, spacing)
+    return Filling(model.xyz[nodes].copy(), np.array(chosen)[owner[nodes]], shares[nodes], volumes, spacing, nodes)
 
 
 def _volume(blocks: list[ElementBlock], xyz: Floats) -> float:
     return math.fsum(float(measures(block, xyz).sum()) for block in blocks)
 
 
-def _blocks_of(model: Model, part: int) -> list[ElementBlock]:
-    """The elements of a part, block by block; they are areas in a flat mesh or volumes."""
+def _blocks_of(model: Model, part: int, dimensions: tuple[int, ...] | None = None) -> list[ElementBlock]:
+    """The elements of a part, block by block; of `dimensions`, by default areas in a flat mesh or volumes."""
     blocks = []
     for block in model.blocks:
         mask = block.part == part
         if mask.any():
             blocks.append(ElementBlock(block.kind, block.ids[mask], block.nodes[mask], block.part[mask]))
-    wanted = 2 if model.dimension == 2 else 3
+    wanted = dimensions or ((2,) if model.dimension == 2 else (3,))
     for block in blocks:
-        if TABLE[block.kind].dimension != wanted:
+        if TABLE[block.kind].dimension not in wanted:
             name = model.parts[part].name or str(part)
             raise ValueError(
-                f"part {name} is made of {block.kind}: particles fill volumes, and areas of a flat mesh (constant z)"
+                f"part {name} is made of {block.kind}: particles fill volumes, and areas of a flat mesh (constant z); "
+                "--particles shells covers shells in space, --particles nodes takes the nodes"
             )
     return blocks
 

@@ -8,6 +8,7 @@ import pytest
 
 from zrno.pipelines import samples
 from zrno.pipelines.check import check, check_text, fault_lines
+from zrno.translators import load_settings
 
 SCENE = "meshes: [{source: plate.msh, target: plate.mcm, settings: plate.yaml, spacing: 0.25}]\ndecks: [plate.mcm]\n"
 SETTINGS = "end_time: 0.1\nmaterials:\n  plate: {density: 2, E: 10, nu: 0.3}\n"
@@ -49,8 +50,8 @@ def test_a_deck_that_cannot_be_run_yet_is_sound(scene: Path) -> None:
     from zrno.pipelines.convert import convert
 
     deck = scene.parent / "deck.mcm"
-    settings = scene.parent / "plate.yaml"
-    convert([scene.parent / "plate.msh"], deck, spacing=0.5, settings_file=settings, overrides={"xsph": True})
+    settings = load_settings(scene.parent / "plate.yaml", overrides={"xsph": True})
+    convert([scene.parent / "plate.msh"], deck, spacing=0.5, settings=settings)
     rows = check([deck])
     assert fault_lines(rows) == []
     line = next(i for i, text in enumerate(deck.read_text().splitlines()) if "veloc_opt" in text) + 2

@@ -115,3 +115,12 @@ def test_checkpoints_after_the_one_resumed_from_go(tmp_path: Path, solver: Any) 
     solver.step = 5
     Checkpointer(tmp_path).start(solver)
     assert names(tmp_path) == ["checkpoint_00000005.h5"]
+
+
+def test_what_a_killed_run_left_half_written_is_removed(tmp_path: Path, solver: Any, drive: Any) -> None:
+    for name in (".4711.checkpoint_3.h5", ".particles.pvd.4711.tmp"):  # of `replacing` and of `write_atomically`
+        (tmp_path / name).touch()
+    for name in (".gitignore", ".notes.tmp"):
+        (tmp_path / name).touch()
+    drive(solver, [Checkpointer(tmp_path, every=100)], 1)
+    assert sorted(path.name for path in tmp_path.iterdir()) == [".gitignore", ".notes.tmp", "checkpoint_00000001.h5"]

@@ -35,6 +35,14 @@ def test_default_panels_with_labels_and_units(folder: Path) -> None:
         assert f">{words}<" in text, words
 
 
+def test_plane_strain_is_per_length(tmp_path: Path, solver: Any, drive: Any) -> None:
+    drive(solver, [History(tmp_path)], 3)
+    Manifest(tmp_path, inputs={}, options={}, threads=1, units="mm-ms-g", dimension=2)
+    text = plot(tmp_path, output=tmp_path / "h.svg").read_text()
+    for words in ("energy [mJ/mm]", "momentum [g/mm mm/ms]", "contact force [N/mm]", "time [ms]"):
+        assert f">{words}<" in text, words
+
+
 def test_chosen_columns(folder: Path) -> None:
     text = plot(folder, output=folder / "h.svg", quantities=["dt", "neighbours"]).read_text()
     assert ">time step [ms]<" in text

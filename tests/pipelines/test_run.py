@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import errno
 import hashlib
 import json
 import os
@@ -19,6 +20,7 @@ import pytest
 import pyvista
 
 from zrno.pipelines.checkpoint import load_latest
+from zrno.pipelines.errors import RunFailed
 from zrno.pipelines.history import COLUMNS
 from zrno.pipelines.load import load
 from zrno.pipelines.run import run
@@ -217,7 +219,8 @@ def test_set_replaces_a_key_of_a_scene(tmp_path: Path) -> None:
     assert all(path.suffix == ".vtk" for path in (tmp_path / "out" / "vtk").iterdir())
     assert result.mesh().n_points == 200
     assert (result.title, result.units) == ("A scene", "cm-us-g")
-    assert (result.history_units["time"], result.history_units["kinetic"]) == ("us", "Mbar cm^3")
+    assert (result.history_units["time"], result.history_units["kinetic"]) == ("us", "Mbar cm^3/cm")  # per depth
+    assert (result.history_units["contact_force_x"], result.dimension) == ("Mbar cm^2/cm", 2)
     assert result.history_units["contact_energy"] == result.history_units["kinetic"]
     assert set(result.manifest["inputs"]) == {str(scene), str(tmp_path / "impact.mcm")}
 
@@ -287,6 +290,34 @@ def test_results_do_not_depend_on_threads(tmp_path: Path) -> None:
     assert_same_end(tmp_path / "1", tmp_path / "2")
 
 
+# the energy balance
+
+
+def test_an_unstable_run_that_does_not_explode_is_a_warning(tmp_path: Path) -> None:
+    source = deck(tmp_path / "impact.mcm", end_time=6.0, every=6.0)
+    done = zrno(tmp_path, "run", source.name, "-o", "out", "--set", "step_factor=2.8", "--json")
+    assert done.returncode == 0
+    result = json.loads(done.stdout)
+    (warning,) = result["warnings"]
+    assert result["status"] == "done"
+    assert f"out by {result['energy']['balance_error']:.0%} of the largest" in warning
+    assert "step_factor below 2.8" in warning
+    assert done.stderr == f"warning: {warning}\n"
+    assert load(tmp_path / "out").manifest["warnings"] == [warning]
+    assert f"WARNING {warning}" in (tmp_path / "out" / "run.log").read_text()
+
+    history = load(tmp_path / "out").history
+    kinetic, internal = history["kinetic"], history["internal"]
+    error = np.abs(kinetic + internal - kinetic[0]) / np.maximum(np.maximum(kinetic, internal), kinetic[0])
+    assert error[-1] == pytest.approx(result["energy"]["balance_error"])
+    assert f"passed 5% at t = {history['time'][np.flatnonzero(error <= 0.05)[-1] + 1]:.4g}:" in warning
+
+    quiet = zrno(tmp_path, "run", source.name, "-o", "out", "--set", "step_factor=2.8", "-q")
+    assert (quiet.returncode, quiet.stderr) == (0, "")
+    stable = run([source], output=tmp_path / "out")
+    assert stable["warnings"] == []
+
+
 # runs that end before their time
 
 
@@ -340,12 +371,14 @@ def test_an_interrupted_run_has_its_checkpoint_and_resumes_to_the_same_end(unbro
     assert code == 130
     assert err.splitlines()[-1] == "interrupted"
     assert "Traceback" not in err
-    assert json.loads(out)["status"] == "interrupted"
+    printed = json.loads(out)
+    assert (printed["status"], printed["errors"]) == ("interrupted", ["interrupted"])
+    assert printed.keys() >= RESULT_KEYS
     manifest = load(broken).manifest
     assert manifest["status"] == "interrupted"
     state = load_latest(broken)
     assert state is not None
-    assert state["step"] == manifest["steps"]
+    assert state["step"] == manifest["steps"] == printed["steps"]
     assert "interrupted at t = " in (broken / "run.log").read_text()
 
     assert run([unbroken.parent / "impact.mcm"], output=broken, resume=True)["status"] == "done"
@@ -416,7 +449,13 @@ def test_a_diverging_run_says_where_and_keeps_what_it_computed(tmp_path: Path) -
     said = re.fullmatch(r"error: step (\d+) at particle (\d+): .*step factor may be too large.*\n", done.stderr)
     assert said
     assert 1 <= int(said[2]) <= 1800
-    assert json.loads(done.stdout)["status"] == "failed"
+    printed = json.loads(done.stdout)
+    assert printed["status"] == "failed"
+    assert printed["errors"] == [done.stderr.strip()]
+    assert printed.keys() >= RESULT_KEYS
+    assert printed["energy"].keys() >= ENERGY_KEYS
+    assert printed["output"] == "out"
+    assert (printed["steps"], printed["particles"]) == (load(tmp_path / "out").manifest["steps"], 1800)
     result = load(tmp_path / "out")
     assert result.manifest["status"] == "failed"
     assert int(said[1]) - result.manifest["steps"] in (0, 1)
@@ -424,3 +463,35 @@ def test_a_diverging_run_says_where_and_keeps_what_it_computed(tmp_path: Path) -
     assert result.mesh().n_points == 1800
     assert len(result.history["time"]) > 2
     assert said[0].strip().removeprefix("error: ") in (tmp_path / "out" / "run.log").read_text()
+
+
+def test_a_run_that_cannot_write_its_results_has_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(self: Series, *args: Any) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device", str(self.path))
+
+    monkeypatch.setattr(Series, "write", full)
+    known: dict[str, Any] = {}
+    with pytest.raises(RunFailed, match="No space left on device"):
+        run([deck(tmp_path / "impact.mcm")], output=tmp_path / "out", known=known)
+    assert (known["status"], known["steps"]) == ("failed", 0)
+    assert load(tmp_path / "out").manifest["status"] == "failed"
+
+
+def test_particles_that_coincide_fail_the_run_before_it_begins(tmp_path: Path) -> None:
+    source = deck(tmp_path / "impact.mcm")
+    first = next(line for line in source.read_text().splitlines() if line.startswith("       1    0"))
+    second = next(line for line in source.read_text().splitlines() if line.startswith("       2    0"))
+    source.write_text(source.read_text().replace(second, "       2" + first[8:]))
+    done = zrno(tmp_path, "run", source.name, "--json")
+    assert done.returncode == 1
+    printed = json.loads(done.stdout)
+    assert (printed["status"], printed["steps"], printed["time"]) == ("failed", 0, 0.0)
+    assert "coincide" in printed["errors"][0]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["impact.mcm"]
+
+
+def test_bad_input_has_status_and_errors_alone(tmp_path: Path) -> None:
+    deck(tmp_path / "impact.mcm")
+    done = zrno(tmp_path, "run", "impact.mcm", "--set", "h_option=1", "--json")
+    assert done.returncode == 2
+    assert json.loads(done.stdout) == {"status": "bad input", "errors": [done.stderr.strip()]}

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from zrno.pipelines import options, scene
-from zrno.translators import InputError, read, yaml_marks
+from zrno.translators import InputError, load_settings, read, yaml_marks
 from zrno.translators.model import Material, Model, ParticleControl
 
 MESH = """$MeshFormat
@@ -279,7 +279,7 @@ def test_strict_writes_nothing_when_something_is_lost(tmp_path: Path) -> None:
     (tmp_path / "plate.msh").write_text(lines)
     (tmp_path / "plate.yaml").write_text(SETTINGS)
     target = tmp_path / "plate.mcm"
-    how = {"settings_file": tmp_path / "plate.yaml", "spacing": 0.5}
+    how = {"settings": load_settings(tmp_path / "plate.yaml"), "spacing": 0.5}
     with pytest.raises(ValueError, match="node sets"):
         convert([tmp_path / "plate.msh"], target, strict=True, **how)  # type: ignore[arg-type]
     assert sorted(p.name for p in tmp_path.iterdir()) == ["plate.msh", "plate.yaml"]

@@ -6,7 +6,19 @@ import numpy as np
 import pytest
 
 from zrno.translators import InputError, load_settings, read, to_particles, write
-from zrno.translators.model import Model
+from zrno.translators.model import (
+    Analysis,
+    BodyLoad,
+    Constraint,
+    Curve,
+    ElementBlock,
+    InitialVelocity,
+    Material,
+    Model,
+    Part,
+    Section,
+)
+from zrno.translators.settings import Settings
 
 GEO = """\
 SetFactory("OpenCASCADE");
@@ -89,16 +101,121 @@ def test_settings_that_do_not_fit_the_mesh(mesh: Model, change: dict, said: str)
     assert said in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"right.density": None}, "materials.right.density is missing (right)"),
+        ({"left.yield_stress": None}, "materials.left.yield_stress is missing"),
+        ({"left.yield_stress": 0}, "materials.left.yield_stress is not positive (0)"),
+        ({"left.beta": 2}, "materials.left.beta is too large (2); expected 0 to 1"),
+        ({"left.tangent_modulus": 2}, "materials.left.tangent_modulus is too large (2); expected less than E"),
+        ({"right.yield_stress": 1}, "the law elastic has no yield_stress (yield_stress); expected one of E, nu"),
+        ({"right.law": "cap"}, "materials.right.K is missing (right); expected a value of K"),
+    ],
+)
+def test_materials_that_are_not_whole(mesh: Model, change: dict, said: str) -> None:
+    overrides = {**MATERIALS, **{f"materials.{key}": value for key, value in change.items()}}
+    with pytest.raises(InputError) as caught:
+        to_particles(mesh, load_settings(overrides=overrides))
+    assert said in str(caught.value)
+
+
 def test_a_part_without_a_material(mesh: Model) -> None:
     with pytest.raises(InputError, match=r"a part has no material \(left\)"):
         to_particles(mesh, load_settings())
 
 
-def test_shells_in_space_are_refused(tmp_path: Path) -> None:
-    (tmp_path / "s.geo").write_text('SetFactory("OpenCASCADE"); Sphere(1) = {0, 0, 0, 1}; Mesh.MeshSizeMax = 0.5;\n')
-    mesh = read(tmp_path / "s.geo")
-    settings = load_settings(overrides={"materials.1.density": 1, "materials.1.E": 1, "materials.1.nu": 0})
-    with pytest.raises(ValueError, match="not flat"):
-        to_particles(mesh, settings, "shells")
+def shell(settings: dict | None = None) -> tuple[Model, Settings]:
+    """A square shell of 2 x 1 in space: three quads, of which one is halved into triangles; density 4."""
+    xyz = np.array([[0, 0, 0], [1, 0, 0], [1.5, 0, 0], [2, 0, 0], [0, 0, 1], [1, 0, 1], [1.5, 0, 1], [2, 0, 1]], float)
+    quads = ElementBlock("quad4", np.array([1, 2]), np.array([[0, 1, 5, 4], [1, 2, 6, 5]]), np.ones(2, int), "shell")
+    halves = ElementBlock("tri3", np.array([3, 4]), np.array([[2, 3, 7], [2, 7, 6]]), np.ones(2, int), "shell")
+    mesh = Model(title="plate", node_ids=np.arange(1, 9), xyz=xyz, blocks=[quads, halves], parts={1: Part(1, "plate")})
+    material = {"materials.plate.density": 4, "materials.plate.E": 1, "materials.plate.nu": 0}
+    return mesh, load_settings(overrides=material | (settings or {}))
+
+
+def test_shells_in_space() -> None:
+    mesh, settings = shell({"materials.plate.thickness": 0.5})
+    model, _ = to_particles(mesh, settings, "shells", 0.25)
+    assert len(model.particles) == 16 + 8 + 2 * 25  # a triangle's longest side is cut into five
+    assert model.materials[1].mass == pytest.approx(2 * 0.5 * 4, rel=1e-13)
+    mass, x = model.particles.mass, model.particles.x
+    np.testing.assert_allclose(mass @ x / mass.sum(), [1.0, 0.0, 0.5], atol=1e-13)
+    nodes, _ = to_particles(mesh, settings, "nodes")
+    assert (len(nodes.particles), nodes.materials[1].mass) == (8, 4.0)
+
+
+def test_shells_without_thickness() -> None:
+    with pytest.raises(InputError, match="the shells of part plate have no thickness"):
+        to_particles(*shell(), "shells")
+    mesh, settings = shell()
+    with pytest.raises(ValueError, match="--particles shells covers shells in space"):
+        to_particles(mesh, settings)
     with pytest.raises(ValueError, match="expected solids, shells or nodes"):
         to_particles(mesh, settings, "spheres")
+    mesh.sections[7] = Section(7, kind="shell", parameters={"thickness_1": 0.1, "thickness_2": 0.3})
+    mesh.parts[1].section = 7
+    model, _ = to_particles(mesh, settings, "shells")
+    assert model.materials[1].mass == pytest.approx(2 * 0.2 * 4, rel=1e-13)
+
+
+def loose() -> Model:
+    """Ten smoothed particles in two parts, of which the second is held; gravity, a velocity, times."""
+    nodes = np.arange(10)
+    block = ElementBlock("point1", nodes + 1, nodes[:, None], np.repeat([3, 1], 5), "sph")
+    block.data["mass"] = np.repeat([0.5, 0.25], 5)
+    mesh = Model(title="heap", node_ids=nodes + 1, xyz=np.stack([0.2 * nodes, 0 * nodes, 0 * nodes], 1), blocks=[block])
+    mesh.parts = {3: Part(3, "sand", material=1, section=1), 1: Part(1, "floor", material=2)}
+    mesh.materials[1] = Material(1, "sand", "cap", 2.0, {"K": 3.0, "G": 1.0, "alpha": 0.1, "D": 7.0, "W": 0.2})
+    mesh.materials[2] = Material(2, "steel", "von_mises", 8.0, {"E": 200.0, "nu": 0.3}, curves={"hardening": 5})
+    mesh.curves[5] = Curve(5, "", np.array([[0, 1.0], [0.1, 3.0], [0.2, 5.0]]))
+    mesh.curves[6] = Curve(6, "", np.array([[0, 0.5], [100, 0.5]]))
+    mesh.sections[1] = Section(1, kind="sph", parameters={"h": 0.3})
+    mesh.constraints.append(Constraint(nodes[5:], np.tile([True, False, True, True, False, False], (5, 1))))
+    mesh.initial_velocities.append(InitialVelocity(nodes[:1], np.array([[0.0, 0.0, -2.0]])))
+    mesh.body_loads.append(BodyLoad((0.0, 0.0, -9.0), curve=6))
+    mesh.analysis = Analysis(end_time=8.0, step_factor=0.5, output_interval=0.25)
+    return mesh
+
+
+def test_particles_of_the_mesh_keep_what_it_says(tmp_path: Path) -> None:
+    model, report = to_particles(loose(), load_settings())
+    assert model.particles.material.tolist() == [1] * 5 + [2] * 5
+    assert model.particles.bc.tolist() == [0] * 5 + [6] * 5
+    assert model.particles.velocity[:, 2].tolist() == [-2.0] + [0.0] * 9
+    sand, floor = model.materials.values()
+    assert (sand.law, sand.mass, sand.h, sand.parameters["alpha"]) == ("cap", 2.5, 0.3, 0.1)
+    assert (floor.law, floor.mass, floor.h) == ("von_mises", 1.25, 0.24)
+    # a straight table of slope 20 is bilinear hardening exactly
+    assert floor.parameters["yield_stress"] == 1.0
+    assert floor.parameters["tangent_modulus"] == pytest.approx(200 * 20 / 220, rel=1e-14)
+    control = model.particle_control
+    assert (control.end_time, control.step_factor, control.output_interval) == (8.0, 0.5, 0.25)
+    assert control.base_acceleration == (0.0, 0.0, -4.5)
+    assert not report
+
+
+def test_settings_overrule_the_mesh() -> None:
+    settings = {
+        "end_time": 3, "gravity": [1, 0, 0], "h_factor": 2, "materials.sand.alpha": 7, "materials.floor.bc": "y",
+        "materials.floor.law": "elastic", "materials.floor.E": 5, "materials.floor.nu": 0.25,
+    }  # fmt: skip
+    model, _ = to_particles(loose(), load_settings(overrides=settings))
+    assert model.materials[1].parameters["alpha"] == 7.0
+    assert (model.materials[2].law, model.materials[2].density) == ("elastic", 8.0)
+    assert model.particles.bc.tolist() == [0] * 5 + [2] * 5
+    assert (model.particle_control.end_time, model.particle_control.base_acceleration) == (3.0, (1.0, 0.0, 0.0))
+    assert model.materials[1].h == pytest.approx(0.4)
+
+
+def test_a_law_that_the_deck_has_not_is_a_named_drop() -> None:
+    mesh = loose()
+    mesh.materials[1].law = "soil_foam"
+    mesh.materials[1].parameters = {"G": 1.0, "K": 2.0}
+    model, report = to_particles(mesh, load_settings())
+    assert [m.name for m in model.materials.values()] == ["floor"]
+    assert [(i.what, i.count) for i in report.dropped] == [("elements of part sand", 5), ("parts", 1)]
+    mesh.materials[2] = mesh.materials[1]
+    with pytest.raises(ValueError, match=r"no part is left: an \.mcm deck has no law like soil_foam"):
+        to_particles(mesh, load_settings())

@@ -9,6 +9,7 @@ import pytest
 
 from zrno.translators import InputError, Model, Report, read, write
 from zrno.translators.formats import find
+from zrno.translators.neu import kind_of
 
 
 def test_importing_loads_nothing_heavy() -> None:
@@ -28,9 +29,6 @@ def test_the_package_alone_loads_no_numpy() -> None:
 @pytest.mark.parametrize(
     ("name", "said"),
     [
-        ("a.k", "LS-DYNA decks are not read yet"),
-        ("a.dyn", "LS-DYNA decks are not read yet"),
-        ("a.neu", "neutral files (.neu) are not read yet"),
         ("a.dat", "PAK decks are not read yet"),
     ],
 )
@@ -40,6 +38,31 @@ def test_formats_to_come_say_so(faults, tmp_path: Path, name: str, said: str) ->
         read(tmp_path / "none" / name)
 
 
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("   -1\n   100\n<NULL>\n4.41\n   -1\n", "FEMAP neutral files are not read yet; expected a gmsh mesh"),
+        ("25       0       0       1       0       0       0       0       0\ntitle\n26 0 0 1 9 4 1 1 0\n",
+         "this is a Patran neutral file, which is not read; expected the mesh as gmsh .msh or as FEMAP neutral file"),
+        ("8\n  0.0 0.0 0.0\n  1 0 1e3\n", "this is a Netgen neutral file, which is not read; expected the mesh as"),
+        ("*KEYWORD\n", "neither a FEMAP nor a Gambit neutral file; expected FEMAP (-1, then 100) or Gambit (CONTROL"),
+        ("-1\n", "neither a FEMAP nor a Gambit neutral file"),
+        ("\0\0\0\n\xff\n", "neither a FEMAP nor a Gambit neutral file"),
+        ("        CONTROL INFO 1.3.0\nENDOFSECTION\n", "not the counts of a mesh"),
+    ],
+)  # fmt: skip
+def test_neutral_files_are_told_apart(faults, text: str, said: str) -> None:
+    assert said in faults(read, text, name="a.neu")[0]
+
+
+def test_neutral_files_of_programs(shared: Path) -> None:
+    kinds = {path.name: kind_of(path.read_bytes()[:8192]) for path in (shared / "samples").glob("*/*.neu")}
+    assert kinds == {
+        path.name: folder for folder in ("femap", "gambit") for path in (shared / "samples" / folder).glob("*.neu")
+    }
+    assert read(shared / "samples/gambit/cubeK5.neu").format == "gambit"
+
+
 def test_a_mesh_under_another_name(tmp_path: Path, shared: Path) -> None:
     (tmp_path / "mesh.neu").write_bytes((shared / "samples/msh/gridap_square.msh").read_bytes())
     assert find(tmp_path / "mesh.neu").name == "msh"
@@ -47,7 +70,7 @@ def test_a_mesh_under_another_name(tmp_path: Path, shared: Path) -> None:
 
 
 def test_targets_that_are_not_written(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=r"not written; expected one of \.mcm, \.vtu"):
+    with pytest.raises(ValueError, match=r"not written; expected one of \.mcm, \.msh, \.k, "):
         write(Model(), tmp_path / "a.stl")
 
 

@@ -139,7 +139,7 @@ def first(lines: list[str]) -> str:
         ("       2.7    0", "       0.0    0", "density is not positive (0.0)"),
         ("      0.12\nelastic", "       0.0\nelastic", "smoothing length is not positive (0.0)"),
         ("       5.4      0.12\nelastic", "      -5.4      0.12\nelastic", "mass is not positive (-5.4)"),
-        ("    1    1       2.7", "    1   10       2.7", "model 10, elastic-plastic hydrodynamic, is"),
+        ("    1    1       2.7", "    1   10       2.7", "the hydro law needs an equation of state (0)"),
         ("    1    1       2.7", "    1   77       2.7", "no such material model (77)"),
         ("    1    1       2.7", "    2    1       2.7", "material number out of order (2); expected 1"),
         ("       1      0.01", "       2      0.01", "do not begin with particle 1 (2)"),
@@ -219,10 +219,33 @@ def test_reference_decks(shared: Path, name: str, count: int) -> None:
     assert m.warnings == []
 
 
-@pytest.mark.parametrize(("name", "model_number"), [("cap3d", 4), ("water2d", 9)])
-def test_reference_decks_of_other_models(shared: Path, name: str, model_number: int) -> None:
-    with pytest.raises(InputError, match=rf":17:10: error: material model {model_number}, .* is not supported"):
-        read(shared / "reference/mcm" / f"{name}.mcm")
+def test_reference_decks_of_other_laws(shared: Path) -> None:
+    cap = read(shared / "reference/mcm/cap3d.mcm").materials[1]
+    assert (cap.law, cap.parameters["K"], cap.parameters["R"], cap.parameters["tension_cutoff"]) == (
+        "cap", 30.62, 2.0, 0.01,
+    )  # fmt: skip
+    water = read(shared / "reference/mcm/water2d.mcm")
+    assert (water.materials[1].law, water.equations_of_state[1].law) == ("fluid", "murnaghan")
+
+
+def test_the_dissertations_deck(shared: Path) -> None:
+    m = read(shared / "samples/mcm/kipkupa.mcm", paired=True)
+    cap, steel = m.materials.values()
+    expected = {
+        "K": 88.62,
+        "G": 29.23,
+        "alpha": 0.02138,
+        "theta": 0.292,
+        "W": 0.0313,
+        "D": 0.752,
+        "R": 3.0,
+        "ftype": 1.0,
+    }
+    assert {name: value for name, value in cap.parameters.items() if value} == expected
+    assert (steel.law, steel.native) == ("von_mises", {"card 1 value 5": 2.5})
+    assert (m.particle_control.dialect, m.particle_control.friction) == ("2019-08", (0.1, 0.1))
+    assert m.particle_control.base_acceleration == (0.0, 0.0, -0.0981)
+    assert sum("kept as it is" in warning for warning in m.warnings) == 2
 
 
 def test_the_generators_wrong_velocities(shared: Path) -> None:

@@ -9,7 +9,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from zrno.translators.mcm import read, write
-from zrno.translators.model import Material, Model, NodeSet, ParticleControl, Particles
+from zrno.translators.mcm.cards import EQUATIONS_OF_STATE, LAWS
+from zrno.translators.model import Eos, Material, Model, NodeSet, ParticleControl, Particles
 
 CODES = st.integers(0, 7)
 # numbers as they can stand in 10 and in 20 columns
@@ -26,10 +27,11 @@ def models(draw: st.DrawFn) -> Model:
     nummat = draw(st.integers(1, 3))
     count = draw(st.integers(nummat, 12))
     material = [*range(1, nummat + 1), *(draw(st.integers(1, nummat)) for _ in range(count - nummat))]
-    materials = {}
+    materials: dict[int, Material] = {}
+    equations: dict[int, Eos] = {}
     for number in range(1, nummat + 1):
-        law = draw(st.sampled_from(["elastic", "von_mises"]))
-        names = ["E", "nu"] if law == "elastic" else ["E", "nu", "yield_stress", "tangent_modulus", "beta"]
+        law = draw(st.sampled_from(sorted(LAWS)))
+        names = list(LAWS[law].positions)
         if law == "von_mises" and draw(st.booleans()):
             names.append("failure_strain")
         materials[number] = Material(
@@ -37,6 +39,14 @@ def models(draw: st.DrawFn) -> Model:
             draw(TEN_POSITIVE), draw(TEN_POSITIVE),
             *(draw(st.none() | TEN_POSITIVE) for _ in range(4)),
         )  # fmt: skip
+        if law == "hydro" and draw(st.booleans()):
+            table = np.array([[draw(TEN), draw(TEN_POSITIVE)] for _ in range(draw(st.integers(1, 16)))])
+            materials[number].tables["hardening"] = table
+        if LAWS[law].eos:
+            materials[number].eos = number
+            kind = draw(st.sampled_from(sorted(EQUATIONS_OF_STATE)))
+            fields = [name for card in EQUATIONS_OF_STATE[kind].cards for name in card.fields]
+            equations[number] = Eos(number, draw(TITLES), kind, {name: draw(TEN) for name in fields})
 
     def column(values: st.SearchStrategy[float]) -> np.ndarray:
         return np.array([draw(values) for _ in range(count)])
@@ -88,9 +98,15 @@ def models(draw: st.DrawFn) -> Model:
         planes=[(flag, draw(TEN)) for flag in (1, 0, 2, 2, 3, 0)] if draw(st.booleans()) else None,
         contact_laws=[(draw(TEN), draw(TEN)) for _ in range(nummat)] if contact else [],
     )
+    if dialect == "2019-10" and draw(st.booleans()):
+        control.birth_death, control.plane_particle = draw(st.integers(1, 3)), draw(st.integers(0, 1))
+        control.birth_range = (draw(st.integers(0, 3)), draw(st.integers(3, 10**9)))
+        planes = [(draw(TWENTY), draw(TWENTY), draw(TWENTY), draw(st.integers(0, 9))) for _ in range(2)]
+        control.birth_plane = planes[0] if control.plane_particle else None
+        control.death_plane = planes[1] if control.birth_death >= 2 else None
     return Model(
         title=draw(TITLES), format="mcm", version="2", dimension=dimension, materials=materials, particles=particles,
-        particle_control=control, velocity_overrun=overrun,
+        particle_control=control, velocity_overrun=overrun, equations_of_state=equations,
     )  # fmt: skip
 
 
@@ -181,7 +197,11 @@ def test_a_title_is_never_a_comment(tmp_path: Path, model: Model, title: str) ->
 
 
 def break_material(model: Model) -> None:
-    model.materials[1].law = "cap"
+    model.materials[1].law = "soil_foam"
+
+
+def break_equation(model: Model) -> None:
+    model.materials[1].law = "fluid"
 
 
 def break_number(model: Model) -> None:
@@ -205,7 +225,8 @@ def break_particles(model: Model) -> None:
 
 
 @pytest.mark.parametrize(
-    "damage", [break_material, break_number, break_contact, break_position, break_owner, break_particles]
+    "damage",
+    [break_material, break_equation, break_number, break_contact, break_position, break_owner, break_particles],
 )
 def test_no_file_of_a_model_that_no_deck_can_hold(tmp_path: Path, model: Model, damage) -> None:
     damage(model)

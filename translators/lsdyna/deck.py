@@ -65,6 +65,7 @@ class Deck:
         self.vectors: dict[int, Floats] = {}
         self.late: list[Callable[[], None]] = []  # what needs all nodes, in the order of the deck
         self.sets: dict[tuple[str, int], Any] = {}
+        self.universe: dict[str, Ints] = {}  # all numbers of a kind, in order, once the mesh is there
         self.depth = 0  # of the sets that are being worked out
         self._counts: dict[str, tuple[int, str]] = {}
         self._places: dict[int, int] | None = None

@@ -134,7 +134,7 @@ def _general(deck: Deck, this: SetSteps, block: Block, rows: Ints) -> None:
         add = not option.startswith("D") or option == "DISCRETE"
         word = option if add else option[1:]
         if word == "ALL" and kind != "segment":
-            this.steps.append((add, lambda: _everything(deck, kind)))
+            this.steps.append((add, lambda: _universe(deck, kind)))
             continue
         values = np.array([v for v in card.values("values") if v], np.int64)
         frame = deck.frame
@@ -241,20 +241,18 @@ def missing(deck: Deck, block: Block, row: int, what: str, number: int) -> None:
 
 def _universe(deck: Deck, kind: str) -> Ints:
     """All numbers of a kind, in order."""
-    model = deck.model
-    match kind:
-        case "node":
-            return np.sort(model.node_ids)
-        case "part":
-            return np.array(sorted(model.parts), np.int64)
-        case family:
-            names = _OF_FAMILY.get(family, (family,))
-            found = [b.ids for b in model.blocks if b.family in names]
-            return np.sort(np.concatenate(found)) if found else np.empty(0, np.int64)
-
-
-def _everything(deck: Deck, kind: str) -> Ints:
-    return _universe(deck, kind)
+    if kind not in deck.universe:
+        model = deck.model
+        match kind:
+            case "node":
+                found = model.node_ids
+            case "part":
+                found = np.array(list(model.parts), np.int64)
+            case family:
+                names = _OF_FAMILY.get(family, (family,))
+                found = np.concatenate([np.empty(0, np.int64), *(b.ids for b in model.blocks if b.family in names)])
+        deck.universe[kind] = np.sort(found)
+    return deck.universe[kind]
 
 
 def _ranges(deck: Deck, this: SetSteps, begin: Ints, end: Ints, step: Ints) -> Ints:

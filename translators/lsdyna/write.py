@@ -31,8 +31,8 @@ def write(model: Model, path: Path | str) -> Report:
     model = mesh_of(model, report)
     mesh = Mesh(model, report)
     largest = mesh.largest_id()
-    if largest > _LARGEST:
-        raise ValueError(f"the number {largest} has more than ten digits: no keyword deck can hold it")
+    if (most := max(largest, mesh.largest_of_sets())) > _LARGEST:
+        raise ValueError(f"the number {most} has more than ten digits: no keyword deck can hold it")
     writer = Writer(Widths.I10 if largest > _LARGEST_STANDARD else Widths.STANDARD, report)
     write_atomically(path, _pieces(model, mesh, writer, report))
     report.approximate("numbers", writer.inexact, "rounded to the 20 columns of the long format")

@@ -44,6 +44,11 @@ class Conditions:
         self.curves = dict(model.curves)
         self.part_sets = list(model.part_sets)
         self.constant: int | None = None
+        self.largest: dict[str, int] = {}  # number of each kind of set
+        self.node_sets: dict[int, NodeSet] = {}
+        for one in reversed(model.node_sets):  # the first of a number is what it means
+            self.node_sets[one.id] = one
+        self.segment_sets = {one.id: one for one in reversed(model.segment_sets)}
 
     def pieces(self) -> Iterator[bytes]:
         """All keywords; what others refer to is made while they are."""
@@ -92,6 +97,9 @@ class Conditions:
             *((_SETS.get(s.family, ""), s, s.elements) for s in model.element_sets),
             *(("SET_PART_LIST", s, s.parts) for s in self.part_sets),
         ]
+        for name, one, _ in every:
+            self.largest[name] = max(self.largest.get(name, 0), one.id)
+        self.largest["SET_SEGMENT"] = max((s.id for s in model.segment_sets), default=0)
         for name, one, members in every:
             if not name:
                 self.report.drop("element sets", 1, f"a keyword deck has no sets of {one.family or 'mixed'} elements")
@@ -105,7 +113,7 @@ class Conditions:
 
     def _free_number(self, seen: set[tuple[str, int]], kind: str, number: int, name: str) -> int:
         if number <= 0 or (kind, number) in seen:
-            new = 1 + max([n for k, n in seen if k == kind] + [s.id for s in self.model.node_sets])
+            new = 1 + max([self.largest.get(kind, 0), *(n for k, n in seen if k == kind)])
             self.report.notes.append(f"set {name or number} is numbered {new}: its number stood twice, or was none")
             number = new
         seen.add((kind, number))
@@ -136,7 +144,7 @@ class Conditions:
 
     def _of_set(self, number: int | None, nodes: Ints) -> bool:
         """Whether nodes are exactly those of a node set."""
-        own: NodeSet | None = next((s for s in self.model.node_sets if s.id == number), None)
+        own = self.node_sets.get(number) if number is not None else None
         return own is not None and len(own.nodes) == len(nodes) and np.array_equal(np.sort(own.nodes), np.sort(nodes))
 
     # Constraints, loads, motions
@@ -227,7 +235,7 @@ class Conditions:
         four = np.column_stack([load.faces[:, :4], load.faces[:, 2]])[:, :4]
         four[:, 3] = np.where(four[:, 3] < 0, four[:, 2], four[:, 3])
         lcid, at = self._lcid(load.curve), load.native.get("at")
-        own = next((s for s in self.model.segment_sets if s.id == load.set), None)
+        own = self.segment_sets.get(load.set) if load.set is not None else None
         named = "_ID" if load.id or load.name else ""
         cards: list[Any] = [f"{load.id:10d}{load.name[:70]}".rstrip()] if named else []
         if own is not None and np.array_equal(own.segments, four) and len(np.unique(values)) == 1:

@@ -35,6 +35,13 @@ class Mesh:
             self.node_ids = np.arange(1, len(model.xyz) + 1)
         self.blocks = self._blocks()
 
+    def largest_of_sets(self) -> int:
+        """The largest number that stands in ten columns of a set."""
+        model = self.model
+        members = [*(s.elements for s in model.element_sets), *(s.parts for s in model.part_sets)]
+        every = (*model.node_sets, *model.element_sets, *model.part_sets, *model.segment_sets)
+        return max([0, *(int(m.max(initial=0)) for m in members), *(s.id for s in every)])
+
     def largest_id(self) -> int:
         """The largest number that stands in eight columns."""
         numbers = [int(self.node_ids.max(initial=0))]

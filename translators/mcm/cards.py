@@ -69,20 +69,73 @@ def transducer(dimension: int) -> Layout:
     return Layout(f"{dimension}e10.0,i5", f"{' '.join('xyz'[:dimension])} material")
 
 
+BIRTH_RANGE = Layout("2i10", "first last")
+BIRTH_DEATH_PLANE = Layout("3e20.0,i5", "x y z orientation")
+
+
 @dataclass(frozen=True, slots=True)
 class Law:
-    """A material law in the deck. positions: parameter -> (property card, value), both from 1."""
+    """A material law in the deck.
+
+    positions: parameter -> (property card, value), both from 1; more: parameters and tables that the reader and the
+    writer know a place for; eos: whether the law needs an equation of state (else it takes none).
+    """
 
     model: int
     positions: dict[str, tuple[int, int]]
+    more: tuple[str, ...] = ()
+    eos: bool = False
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """All parameters of the law in the deck."""
+        return (*self.positions, *self.more)
 
 
+# The cap's X0 stands twice: the start of kappa is made of card 5, the hardening law of card 4.
 LAWS = {
     "elastic": Law(1, {"E": (1, 1), "nu": (2, 1)}),
-    "von_mises": Law(3, {"E": (1, 1), "nu": (2, 1), "yield_stress": (3, 1), "tangent_modulus": (4, 1), "beta": (5, 1)}),
-}
+    "von_mises": Law(
+        3,
+        {"E": (1, 1), "nu": (2, 1), "yield_stress": (3, 1), "tangent_modulus": (4, 1), "beta": (5, 1)},
+        ("failure_strain",),
+    ),
+    "cap": Law(
+        4,
+        {"K": (1, 1), "G": (2, 1), "alpha": (3, 1), "theta": (4, 1), "gamma": (5, 1), "beta": (6, 1), "R": (1, 2),
+         "D": (2, 2), "W": (3, 2), "X0": (4, 2), "ftype": (6, 2), "tension_cutoff": (1, 3), "vec": (5, 3), "C": (6, 3),
+         "N": (1, 4)},
+    ),
+    "fluid": Law(9, {"pressure_cutoff": (1, 1), "viscosity": (1, 2)}, eos=True),
+    "hydro": Law(
+        10,
+        {"G": (1, 1), "yield_stress": (1, 2), "hardening_modulus": (1, 3), "pressure_cutoff": (1, 4), "a1": (1, 5),
+         "a2": (1, 6), "spall": (1, 7), "failure_strain": (2, 1)},
+        eos=True,
+    ),
+}  # fmt: skip
 FAILURE_SWITCH, FAILURE_STRAIN = (6, 1), (6, 2)  # von_mises: the strain counts only where the switch is 1
+CAP_START = (5, 2)  # the cap's second X0
+TABLE_CARDS = {"strain": (3, 4), "stress": (5, 6)}  # hydro: 16 points of the hardening table
+KEPT = 5  # values of a property card that MCM keeps, but for hydro, whose 48 numbers it takes in sequence
 
-# What MCM knows beyond LAWS: named in messages, and their cards are skipped so that later faults are found too.
-OTHER_MODELS = {4: "generalised cap", 9: "fluid", 10: "elastic-plastic hydrodynamic"}
-EOS_CARDS = {1: 2, 4: 1, 13: 1, 28: 1, 41: 1}
+
+@dataclass(frozen=True, slots=True)
+class EquationOfState:
+    """An equation of state in the deck: its number, its cards, and the parameters in the order of their values."""
+
+    number: int
+    cards: tuple[Layout, ...]
+
+
+def _eos(names: str) -> Layout:
+    return Layout(f"{len(names.split())}e10.0", names)
+
+
+EQUATIONS_OF_STATE = {
+    "linear_polynomial": EquationOfState(1, (_eos("C0 C1 C2 C3 C4 C5 C6 E0"), _eos("V0"))),
+    "gruneisen": EquationOfState(4, (_eos("C S1 S2 S3 gamma0 a E0 V0"),)),
+    "perfect_gas": EquationOfState(13, (_eos("gamma E0 second V0"),)),
+    "murnaghan": EquationOfState(28, (_eos("B gamma E0 V0"),)),
+    "mie_gruneisen": EquationOfState(41, (_eos("C S cv T0 gamma0 V0 b E0"),)),
+}

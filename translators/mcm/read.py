@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from zrno.translators.mcm import cards as layouts
-from zrno.translators.mcm.sections import Sections
+from zrno.translators.mcm.laws import read_eos, read_law
+from zrno.translators.mcm.sections import DEATH, Sections
 from zrno.translators.model import Material, Model, ParticleControl, Particles, Source
 from zrno.translators.text import Card, Cards, Fault, InputError, read_bytes
 
@@ -77,7 +78,9 @@ class _Deck:
         flags = [options[f"nthp{axis}"] for axis in "xyz"] if self.version == 2 else [0, 0, 0]
         contact = self.version == 2 and bool(options["contact"])
         if self.version == 1 or control["init_v"]["init_v"]:
-            after = 2 * bool(options["symmetry"]) + contact * (1 + first["nummat"]) + any(flags)
+            born = self.control.birth_death
+            last = born and 1 + (self.control.plane_particle > 0) + (born >= DEATH)
+            after = 2 * bool(options["symmetry"]) + contact * (1 + first["nummat"]) + any(flags) + last
             sections.velocities(particles, after)
         if options["symmetry"]:
             sections.planes(self.version)
@@ -85,6 +88,7 @@ class _Deck:
             sections.contact()
         if self.version == 2:
             sections.base_acceleration(flags, options)
+            sections.birth_and_death()
         interpolation.check("kernel", interpolation["kernel"] in (0, 1), "no such kernel", "1 (cubic B-spline)")
         self.cards.faults.stop()
         if self.cards.left:
@@ -170,8 +174,9 @@ class _Deck:
         if not said:
             return
         c.dialect = "2019-10"
-        for name in ("birth_death", "plane_particle"):
-            options.check(name, options[name] == 0, f"{name} is not supported", "0")
+        options.check("birth_death", 0 <= options["birth_death"] <= 3, "no such birth and death", "0 to 3")
+        options.check("plane_particle", options["plane_particle"] >= 0, "plane_particle is negative", "0 or more")
+        c.birth_death, c.plane_particle = options["birth_death"], options["plane_particle"]
         kind = options["contact_option"]
         c.places |= dict.fromkeys(("friction", "fluid_friction"), options.place("contact_option"))
         options.check(
@@ -212,32 +217,25 @@ class _Deck:
         self.model.materials[number] = material
         if not a.sound("eos"):
             self.cards.faults.stop()  # cards of an equation of state may follow, or none
-        if a["eos"]:
-            self.cards.card(layouts.MATERIAL_TITLE, f"equation of state of material {number}")
-            self.cards.block(layouts.PROPERTIES, layouts.EOS_CARDS.get(a["eos"], 1), "equation of state card")
         law = next((name for name, row in layouts.LAWS.items() if row.model == a["model"]), None)
         if law is None:
-            other = layouts.OTHER_MODELS.get(a["model"])
             supported = ", ".join(f"{row.model} ({name})" for name, row in layouts.LAWS.items())
-            message = f"material model {a['model']}, {other}, is not supported" if other else "no such material model"
-            a.fault("model", message, f"one of {supported}")
-            return
-        a.check("eos", a["eos"] == 0, f"the {law} law takes no equation of state", "0")
-        material.law = law
-
-        def value(position: tuple[int, int]) -> float:
-            return float(properties[f"value_{position[1]}"][position[0] - 1])
-
-        material.parameters = {name: value(position) for name, position in layouts.LAWS[law].positions.items()}
-        if law == "von_mises":
-            strain, on = value(layouts.FAILURE_STRAIN), value(layouts.FAILURE_SWITCH) == 1.0
-            if on:
-                material.parameters["failure_strain"] = strain
-            elif strain:
-                self.model.warnings.append(
-                    f"{self.path}:{properties.line(5)}: the failure strain {strain:g} is not used: "
-                    "failure is switched off (first number of the card)"
-                )
+            a.fault("model", "no such material model", f"one of {supported}")
+        else:
+            read_law(self.model, material, law, properties)
+        needs = law is not None and layouts.LAWS[law].eos
+        numbers = ", ".join(f"{row.number} ({name})" for name, row in layouts.EQUATIONS_OF_STATE.items())
+        if law is not None:
+            message = f"the {law} law {'needs an' if needs else 'takes no'} equation of state"
+            a.check("eos", (a["eos"] != 0) == needs, message, f"one of {numbers}" if needs else "0")
+        if a["eos"]:
+            kind = next((n for n, row in layouts.EQUATIONS_OF_STATE.items() if row.number == a["eos"]), None)
+            if kind is None:
+                a.fault("eos", "no such equation of state", f"one of {numbers}")
+                self.cards.faults.stop()  # how many cards it has is not known
+            else:
+                self.model.equations_of_state[number] = read_eos(self.cards, kind, number)
+                material.eos = number
 
     def _particles(self, count: int) -> Particles:
         dimension = self.control.dimension

@@ -9,6 +9,7 @@ from zrno.translators.model import Model, ParticleControl, Particles
 from zrno.translators.text import Card, Cards
 
 _PER_CARD = 10  # history particles a card
+DEATH = 2  # of birth_death: particles die; 3: and are born
 
 
 class Sections:
@@ -142,3 +143,21 @@ class Sections:
                 )
         if ax or ay or az:
             self.control.base_acceleration = (ax, ay, az)
+
+    def birth_and_death(self) -> None:
+        """Particles that are born, the plane where, and the plane where particles die (dialect 2019-10)."""
+        c = self.control
+        if not c.birth_death:
+            return
+        born = self.cards.card(layouts.BIRTH_RANGE, "the birth and death card")
+        c.birth_range = (born["first"], born["last"])
+        born.check("first", 0 <= born["first"] <= born["last"], "particles that are born", "first and last number")
+
+        def plane(what: str) -> tuple[float, float, float, int]:
+            card = self.cards.card(layouts.BIRTH_DEATH_PLANE, what)
+            return card["x"], card["y"], card["z"], card["orientation"]
+
+        if c.plane_particle > 0:
+            c.birth_plane = plane("the plane of birth")
+        if c.birth_death >= DEATH:
+            c.death_plane = plane("the plane of death")

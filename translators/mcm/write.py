@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from zrno.translators.mcm import cards as layouts
+from zrno.translators.mcm.laws import eos_rows, property_values
 from zrno.translators.model import Floats, Ints, Material, Model, ParticleControl, Particles
 from zrno.translators.real_text import real_text, real_texts
 from zrno.translators.report import Report
@@ -71,7 +72,13 @@ class _Writer:
             raise ValueError("the materials of a particle deck are numbered 1, 2, 3, ...")
         for material in self.materials:
             if material.law not in layouts.LAWS:
-                raise ValueError(f"material {material.id}: an .mcm deck cannot say the law {material.law!r} yet")
+                raise ValueError(f"material {material.id}: an .mcm deck cannot say the law {material.law!r}")
+            eos = self.model.equations_of_state.get(-1 if material.eos is None else material.eos)
+            if layouts.LAWS[material.law].eos != (eos is not None):
+                need = "needs an" if layouts.LAWS[material.law].eos else "takes no"
+                raise ValueError(f"material {material.id}: the {material.law} law {need} equation of state")
+            if eos is not None and eos.law not in layouts.EQUATIONS_OF_STATE:
+                raise ValueError(f"material {material.id}: an .mcm deck has no equation of state {eos.law!r}")
         if p.material.min() < 1 or p.material.max() > len(self.materials):
             raise ValueError("a particle's material is not among the deck's materials")
         if c.contact and len(c.contact_laws) != len(self.materials):
@@ -86,8 +93,8 @@ class _Writer:
         """The dialect written; what an asked for one cannot say is reported."""
         c = self.control
         sayable = {
-            "2.07": c.friction is None and c.fluid_friction is None,
-            "2019-08": c.fluid_friction is None,
+            "2.07": c.friction is None and c.fluid_friction is None and not c.birth_death,
+            "2019-08": c.fluid_friction is None and not c.birth_death,
             "2019-10": True,
         }
         if asked is None:
@@ -95,8 +102,10 @@ class _Writer:
         if asked not in sayable:
             raise ValueError(f"no such dialect: {asked}; expected one of {', '.join(layouts.DIALECTS)}")
         if not sayable[asked]:
-            what = "fluid friction" if c.fluid_friction is not None else "friction"
-            self.report.drop(what, 1, f"dialect {asked} has no place for it: write 2019-10")
+            lost = {"fluid friction": c.fluid_friction is not None, "birth and death": c.birth_death > 0,
+                    "friction": c.friction is not None and asked == "2.07"}  # fmt: skip
+            for what, there in lost.items():
+                self.report.drop(what, int(there), f"dialect {asked} has no place for it: write 2019-10")
         return asked
 
     # Text of cards
@@ -182,7 +191,8 @@ class _Writer:
         else:
             kind = 2 if c.fluid_friction is not None else int(c.friction is not None)
             yield from self._heading(layouts.CARD_7_OPTIONS, "control card 7")
-            yield self._line(layouts.CARD_7_OPTIONS, {"contact_option": kind}, "control card 7")
+            options = {"birth_death": c.birth_death, "contact_option": kind, "plane_particle": c.plane_particle}
+            yield self._line(layouts.CARD_7_OPTIONS, options, "control card 7")
             if kind == 1:
                 yield from (*self._heading(layouts.FRICTION), friction)
             elif kind == 2:
@@ -192,11 +202,13 @@ class _Writer:
     def _materials(self) -> Iterator[str]:
         for m in self.materials:
             what, law = f"material {m.id}", layouts.LAWS[m.law]
+            eos = self.model.equations_of_state[m.eos] if m.eos is not None else None
             yield from self._heading(layouts.MATERIAL, what)
             yield self._line(
                 layouts.MATERIAL,
-                {"number": m.id, "model": law.model, "density": m.density, "quadratic": m.viscosity_quadratic,
-                 "linear": m.viscosity_linear}, what,
+                {"number": m.id, "model": law.model, "density": m.density,
+                 "eos": 0 if eos is None else layouts.EQUATIONS_OF_STATE[eos.law].number,
+                 "quadratic": m.viscosity_quadratic, "linear": m.viscosity_linear}, what,
             )  # fmt: skip
             yield from self._heading(layouts.MATERIAL_PARTICLES)
             yield self._line(
@@ -205,26 +217,18 @@ class _Writer:
             yield from self._heading(layouts.MATERIAL_TITLE)
             name = self._ascii(m.name, 72, f"name of material {m.id}")
             yield " " + name if name[:1] in ("*", "$") else name
-            values = np.zeros((layouts.PROPERTY_CARDS, 8))
-            for parameter, (card, place) in law.positions.items():
-                values[card - 1, place - 1] = m.parameters.get(parameter, 0.0)
-            said = set(law.positions)
-            if m.law == "von_mises" and "failure_strain" in m.parameters:
-                said.add("failure_strain")
-                for (card, place), value in (
-                    (layouts.FAILURE_SWITCH, 1.0),
-                    (layouts.FAILURE_STRAIN, m.parameters["failure_strain"]),
-                ):
-                    values[card - 1, place - 1] = value
-            self.report.drop(
-                f"parameters of {what}", len(set(m.parameters) - said), ", ".join(sorted(set(m.parameters) - said))
-            )
-            names = [*law.positions, *(["failure"] if m.law == "von_mises" else [])]
-            yield f"$ {layouts.PROPERTY_CARDS} cards, first values: {', '.join(names)}"[:80]
-            for row in values:
+            yield f"$ {layouts.PROPERTY_CARDS} cards, (card, value): {_positions(m.law)}"[:80]
+            for row in property_values(m, self.report):
                 yield self._line(
                     layouts.PROPERTIES, dict(zip(layouts.PROPERTIES.fields, row.tolist(), strict=True)), what
                 )
+            if eos is not None:
+                yield f"$ equation of state {eos.law}"
+                title = self._ascii(eos.name, 72, f"name of the equation of state of {what}")
+                yield " " + title if title[:1] in ("*", "$") else title
+                for layout, values in eos_rows(eos):
+                    yield from self._heading(layout)
+                    yield self._line(layout, values, what)
 
     def _particles(self) -> Iterator[bytes]:
         p, dimension = self.particles, self.control.dimension
@@ -314,6 +318,21 @@ class _Writer:
                 dict(zip(("ax", "ay", "az"), c.base_acceleration, strict=True)),
                 "base acceleration",
             )
+
+        if c.birth_death and self.dialect == layouts.DIALECTS[-1]:
+            yield from self._heading(layouts.BIRTH_RANGE, "birth and death")
+            yield self._line(
+                layouts.BIRTH_RANGE, dict(zip(("first", "last"), c.birth_range or (0, 0), strict=True)), ""
+            )
+            for plane in (c.birth_plane if c.plane_particle else None, c.death_plane if c.birth_death >= 2 else None):
+                if plane is not None:
+                    values = dict(zip(layouts.BIRTH_DEATH_PLANE.fields, plane, strict=True))
+                    yield self._line(layouts.BIRTH_DEATH_PLANE, values, "birth and death")
+
+
+def _positions(law: str) -> str:
+    """Where the parameters stand, for the heading of the property cards."""
+    return " ".join(f"{name} {card},{value}" for name, (card, value) in layouts.LAWS[law].positions.items())
 
 
 def _joined(lines: list[str]) -> bytes:

@@ -23,7 +23,10 @@ def test_standard_columns_abut(deck: Read) -> None:
 
 
 def test_numbers_of_fortran(deck: Read) -> None:
-    model = deck("*MAT_ELASTIC\n        2.7.80000E-9   1.5D+3     8.9-3\n*NODE\n      1.         2.1E+05           1.5-3            .5D1\n")
+    model = deck(
+        "*MAT_ELASTIC\n        2.7.80000E-9   1.5D+3     8.9-3\n"
+        "*NODE\n      1.         2.1E+05           1.5-3            .5D1\n"
+    )
     material = model.materials[2]
     assert (material.density, material.parameters) == (7.8e-9, {"E": 1500.0, "nu": 8.9e-3})
     assert model.xyz.tolist() == [[2.1e5, 1.5e-3, 5.0]]
@@ -35,7 +38,8 @@ def test_long_format(deck: Read, keyword: str) -> None:
     model = deck(keyword + line)
     assert model.node_ids.tolist() == [12345678901]
     assert model.xyz.tolist() == [[1.2345678901235e-3, -2.5, 0.1]]
-    assert model.fixed is not None and model.fixed[0, :3].all()
+    assert model.fixed is not None
+    assert model.fixed[0, :3].all()
 
 
 def test_long_nodes_of_two_lines_each(deck: Read) -> None:
@@ -166,4 +170,5 @@ def test_cases_are_warned_of(deck: Read) -> None:
 def test_faults_have_their_place(deck: Read, text: str, place: str, message: str) -> None:
     with pytest.raises(InputError) as caught:
         deck(text)
-    assert place in str(caught.value) and message in str(caught.value)
+    assert place in str(caught.value)
+    assert message in str(caught.value)

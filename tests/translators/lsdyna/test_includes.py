@@ -35,7 +35,8 @@ def test_files_are_found(deck: Read, main: str, name: str) -> None:
 def test_files_within_files_are_sought_beside_them_first(deck: Read) -> None:
     files = {"sub/a.k": "*INCLUDE\nb.k\n", "sub/b.k": NODE, "b.k": "*TITLE\nthe wrong one\n"}
     model = deck("*INCLUDE\nsub/a.k\n", files=files)
-    assert len(model.xyz) == 1 and not model.title
+    assert len(model.xyz) == 1
+    assert not model.title
     assert [Path(path).name for path in model.includes] == ["a.k", "b.k"]
 
 

@@ -88,8 +88,8 @@ def test_many_solids_are_split_as_few_are(deck: Read) -> None:
     few = {kind: (which, part) for kind, which, part in split_solids(nodes[: len(rows)])}
     assert found.keys() == few.keys()
     for kind, (which, part) in few.items():
-        assert which is not None and found[kind][0] is not None
-        assert found[kind][0][: len(which)].tolist() == which.tolist()
+        assert which is not None
+        assert found[kind][0][: len(which)].tolist() == which.tolist()  # type: ignore[index]
         assert found[kind][1][: len(which)].tolist() == part.tolist()
     assert sum(len(which) for which, _ in found.values()) == many  # type: ignore[arg-type,misc]
 
@@ -177,7 +177,11 @@ def test_thick_shells_beams_springs_masses(deck: Read) -> None:
     assert found["spring", "line2", ("scale",)].data["scale"].tolist() == [2.5]
     assert found["spring", "point1", ("scale",)].nodes.tolist() == [[3]]
     mass = found["mass", "point1", ("mass",)]
-    assert (mass.nodes.ravel().tolist(), mass.data["mass"].tolist(), mass.part.tolist()) == ([7, 6], [0.25, 0.5], [0, 2])
+    assert (mass.nodes.ravel().tolist(), mass.data["mass"].tolist(), mass.part.tolist()) == (
+        [7, 6],
+        [0.25, 0.5],
+        [0, 2],
+    )
 
 
 def test_particles(deck: Read) -> None:

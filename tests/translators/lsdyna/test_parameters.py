@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from contextlib import suppress
 
 import pytest
 from hypothesis import given
@@ -21,8 +22,9 @@ Read = Callable[..., Model]
     [
         ("1+2*3", 7), ("7/2", 3), ("-7/2", -3), ("7./2", 3.5), ("2**3**2", 512), ("2^3", 8), ("-2**2", -4),
         ("2**-1", 0.5), ("(1+2)*-3", -9), ("max(1, 2.5, 2)", 2.5), ("mod(-7, 3)", -1), ("sign(3, -1)", -3),
-        ("sqrt(2.)", math.sqrt(2)), ("atan2(1.,1.)", math.pi / 4), ("pi", math.pi), ("1.5D+3", 1500.0), ("nint(2.5)", 3),
-        ("int(-2.7)", -2), ("&a * b", 12.0), ("A/B", 0.75), ("--3", 3), ("cos(0.)", 1.0), ("min(a,b)", 3.0),
+        ("sqrt(2.)", math.sqrt(2)), ("atan2(1.,1.)", math.pi / 4), ("pi", math.pi), ("1.5D+3", 1500.0),
+        ("nint(2.5)", 3), ("int(-2.7)", -2), ("&a * b", 12.0), ("A/B", 0.75), ("--3", 3),
+        ("cos(0.)", 1.0), ("min(a,b)", 3.0),
     ],
 )  # fmt: skip
 def test_expressions(text: str, value: float) -> None:
@@ -44,10 +46,8 @@ def test_bad_expressions(text: str) -> None:
 
 @given(st.text(alphabet="0123456789+-*/^(),.eEdD abcsinmx&<>", max_size=60))
 def test_any_text_is_a_number_or_a_bad_expression(text: str) -> None:
-    try:
+    with suppress(BadExpression):
         assert math.isfinite(evaluate(text, {"a": 2, "x": -1.5}))
-    except BadExpression:
-        pass
 
 
 def _e(model: Model) -> float:
@@ -102,7 +102,7 @@ def test_what_counts_of_a_parameter_that_is_defined_twice(deck: Read, flag: int 
 
 
 def test_a_parameter_that_may_not_be_defined_twice(deck: Read) -> None:
-    with pytest.raises(InputError, match=":5:.*parameter a is defined twice"):
+    with pytest.raises(InputError, match=r":5:.*parameter a is defined twice"):
         deck("*PARAMETER_DUPLICATION\n         3\n*PARAMETER\nR        a       1.0\nR        a       2.0\n")
 
 

@@ -63,7 +63,9 @@ def test_element_sets(deck: Read, text: str, members: list[int]) -> None:
 
 def test_part_and_segment_sets(deck: Read) -> None:
     model = deck(
-        NODES + SHELLS + "*SET_PART_LIST_GENERATE\n1\n1,9\n*SET_PART\n2\n7\n*SET_SEGMENT_TITLE\ntop\n3\n1,2,3,4\n1,2,3\n"
+        NODES
+        + SHELLS
+        + "*SET_PART_LIST_GENERATE\n1\n1,9\n*SET_PART\n2\n7\n*SET_SEGMENT_TITLE\ntop\n3\n1,2,3,4\n1,2,3\n"
         "*SET_SEGMENT_GENERAL\n4\nSEG,5,6,7,7\n*SET_BEAM\n5\n1\n*SET_TSHELL\n6\n2\n*SET_DISCRETE\n7\n3\n*SET_SOLID\n8\n4\n"
     )
     assert [s.parts.tolist() for s in model.part_sets] == [[1, 2], [7]]

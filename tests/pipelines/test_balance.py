@@ -1,0 +1,54 @@
+"""The watch on the energy balance: since when it has been out, also of a run that was resumed so."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import pytest
+
+from zrno.pipelines.balance import Balance
+
+
+class Made:
+    """A solver whose energy balance error is given step by step."""
+
+    def __init__(self, *errors: float) -> None:
+        self.errors = errors
+        self.step = 0
+
+    @property
+    def time(self) -> float:
+        return 0.1 * self.step
+
+    def advance(self) -> None:
+        self.step += 1
+
+    def energy_report(self) -> dict[str, float]:
+        return {"balance_error": self.errors[self.step]}
+
+
+@pytest.mark.parametrize(
+    ("errors", "said"),
+    [
+        ((0.0, 0.01, 0.05), None),
+        ((0.0, 0.01, 0.06, 0.5), "out by 50% of the largest .* it passed 5% at t = 0.2: "),
+        ((0.0, 0.06, 0.02, 0.07), "out by 7% of the largest .* it passed 5% at t = 0.3: "),
+        ((0.0, 0.06, 0.02), None),
+        ((0.0, 0.06, 12.34), "out by 12.3 times the largest .* it passed 5% at t = 0.1: "),
+        ((0.1, 0.2), r"it was above 5% when the run was resumed at t = 0:"),
+        ((0.1, 0.0, 0.2), "it passed 5% at t = 0.2:"),
+        ((0.0, float("nan")), None),
+    ],
+)
+def test_since_when_it_has_been_out(drive: Any, errors: tuple[float, ...], said: str | None) -> None:
+    solver = Made(*errors)
+    balance = Balance(interval=0.1, step_factor=2.0)
+    drive(solver, [balance], len(errors) - 1)
+    warning = balance.warning(solver)  # type: ignore[arg-type]
+    if said is None:
+        assert warning is None
+    else:
+        assert warning is not None
+        assert re.search(said, warning), warning
+        assert "step_factor below 2" in warning

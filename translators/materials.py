@@ -1,0 +1,92 @@
+"""The material of each part: what the settings say of it, over what the mesh itself says."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from zrno.translators.law_maps import with_defaults
+from zrno.translators.laws import LAWS
+from zrno.translators.model import Material, Model
+from zrno.translators.settings import Settings
+
+
+def settings_of(settings: Settings, model: Model, part: int) -> tuple[str, dict[str, Any] | None]:
+    """The name by which the settings know a part (its name, or its number), and their entry of its material."""
+    entries = settings["materials"]
+    for name in (model.parts[part].name, str(part)):
+        if name in entries:
+            return name, entries[name]
+    return model.parts[part].name or str(part), None
+
+
+def materials_of(model: Model, parts: Sequence[int], settings: Settings) -> dict[int, Material]:
+    """The material of each part. Raises InputError with all that is missing or wrong in the settings."""
+    names = {key for number, part in model.parts.items() for key in (part.name, str(number)) if key}
+    for group in ("materials", "contact_laws"):
+        for name in settings[group]:
+            if name not in names:
+                expected = "one of " + ", ".join(sorted(names)[:20])
+                settings.fault((group, name), f"{group} of a part that the mesh does not have", name, expected)
+    found: dict[int, Material] = {}
+    for part in parts:
+        own = model.materials.get(model.parts[part].material or 0)
+        name, entry = settings_of(settings, model, part)
+        if own is None and entry is None:
+            settings.fault(
+                ("materials",), "a part has no material", name, f"materials: {{{name}: {{law: elastic, ...}}}}"
+            )
+            continue
+        material = _merged(own, entry or {}, part, name)
+        _check(settings, name, material)
+        found[part] = with_defaults(material)
+    settings.stop()
+    return found
+
+
+def _merged(own: Material | None, entry: dict[str, Any], part: int, name: str) -> Material:
+    """The mesh's material with what the settings say; a law that they name makes it wholly theirs."""
+    if own is None or entry.get("law"):
+        own = Material(own.id if own else part, name, entry.get("law") or "elastic", own.density if own else 0.0)
+    given = {key: entry[key] for key in LAWS.get(own.law, LAWS["elastic"]).parameters if entry.get(key) is not None}
+    tables = dict(own.tables)
+    if entry.get("hardening"):
+        tables["hardening"] = np.array(entry["hardening"], float)
+    density = own.density if entry.get("density") is None else entry["density"]
+    return replace(own, density=density, parameters=own.parameters | given, tables=tables)
+
+
+def _check(settings: Settings, name: str, material: Material) -> None:
+    """What a law needs and has not, and what the settings give that it has not, at the settings' keys."""
+    law = LAWS.get(material.law)
+    if law is None:
+        message = f"the mesh's law of {name} is not known here"
+        settings.fault(("materials", name), message, material.law or "none", "law: ...")
+        return
+    p = material.parameters
+    if material.density <= 0:
+        settings.fault(("materials", name), f"materials.{name}.density is missing", name, "a value of density")
+    for key, default in law.parameters.items():
+        if default is None and key not in p and not (key == "yield_stress" and instead_of_yield(material)):
+            settings.fault(("materials", name), f"materials.{name}.{key} is missing", name, f"a value of {key}")
+    given = {key for key, value in settings["materials"].get(name, {}).items() if value is not None}
+    others = {key for other in LAWS.values() for key in other.parameters} - set(law.parameters)
+    for key in sorted(given & others):
+        expected = "one of " + ", ".join(law.parameters)
+        settings.fault(("materials", name, key), f"the law {material.law} has no {key}", key, expected)
+    if material.law == "von_mises":
+        for key, bad, message, wanted in (
+            ("beta", p.get("beta", 1.0) > 1, "too large", "0 to 1"),
+            ("yield_stress", p.get("yield_stress", 1.0) <= 0, "not positive", "a stress"),
+            ("tangent_modulus", p.get("tangent_modulus", 0.0) >= p.get("E", np.inf), "too large", "less than E"),
+        ):
+            if bad and not (key == "yield_stress" and instead_of_yield(material)):
+                settings.fault(("materials", name, key), f"materials.{name}.{key} is {message}", f"{p[key]:g}", wanted)
+
+
+def instead_of_yield(material: Material) -> bool:
+    """Whether a table or a curve says what yield_stress and tangent_modulus would."""
+    return "hardening" in material.tables or "hardening" in material.curves

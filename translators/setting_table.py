@@ -1,0 +1,153 @@
+"""The settings of an analysis, what a mesh does not carry: one table of keys, types, defaults and deck fields."""
+
+from __future__ import annotations
+
+from zrno.translators.laws import LAWS
+from zrno.translators.setting_types import (
+    BOUNDARY_CODES,
+    Group,
+    Setting,
+    count,
+    dofs,
+    law_parameters,
+    number,
+    one_of,
+    pairs,
+    some_vector,
+    vector,
+    word,
+)
+
+TABLE: tuple[Setting | Group, ...] = (
+    Setting("dimension", one_of(None, 2, 3), None, "2 plane strain, 3; null: the mesh's", "card 1 axopt"),
+    Setting("end_time", number(0.0), 1.0, "end of the analysis", "card 2 endtime"),
+    Setting("step_factor", number(0.0), 0.8, "factor on the critical time step", "card 2 tssf"),
+    Setting("initial_step", number(0.0), 0.0, "first time step; 0: automatic", "card 2 itss"),
+    Setting(
+        "output_interval",
+        number(0.0, optional=True),
+        None,
+        "time between frames; null: end_time / 20",
+        "card 3 stpltime",
+    ),
+    Setting(
+        "history_interval",
+        number(0.0, optional=True),
+        None,
+        "of the histories; null: end_time / 200",
+        "card 3 thpltime",
+    ),
+    Setting("kernel", one_of("cubic_spline"), "cubic_spline", "smoothing kernel, support 2h", "card 6 kernel"),
+    Setting(
+        "step_option",
+        one_of(0, 1, 2),
+        1,
+        "critical step: 0 DYNA's, 1 h/(c+v), 2 nearest distance/(c+v)",
+        "card 5 tcrit",
+    ),
+    Setting("h_option", one_of(0, 1, 2), 0, "smoothing length: 0 constant, 1 by div v, 2 by density", "card 6 h_opt"),
+    Setting("h_factor", number(0.0, above=True), 1.2, "smoothing length in spacings", "material card h"),
+    Setting("xsph", one_of(False, True), False, "particles move with a smoothed velocity", "card 5 veloc_opt"),
+    Setting("gravity", vector, [0.0, 0.0, 0.0], "base acceleration x, y, z", "base acceleration card"),
+    Setting(
+        "contact",
+        one_of("kernel", "potential"),
+        "kernel",
+        "between bodies: kernel, or potential (repulsive force)",
+        "card 5 contact",
+    ),
+    Group(
+        "contact_laws",
+        (
+            Setting("strength", number(0.0), 0.0, "K, pressure / density^2", "contact card K"),
+            Setting("exponent", number(0.0), 4.0, "n", "contact card n"),
+        ),
+        "of contact: potential, by part",
+        named=True,
+    ),
+    Group(
+        "viscosity",
+        (
+            Setting(
+                "quadratic", number(0.0, optional=True), None, "Q; null or 0: the deck's 1.5", "material card av_q"
+            ),
+            Setting("linear", number(0.0, optional=True), None, "L; null or 0: the deck's 0.06", "material card av_l"),
+        ),
+        "artificial viscosity",
+    ),
+    Group(
+        "friction",
+        (
+            Setting("static", number(0.0, optional=True), None, "null: no friction", "friction card"),
+            Setting("kinetic", number(0.0, optional=True), None, "at most static", "friction card"),
+        ),
+        "between bodies",
+    ),
+    Group(
+        "materials",
+        (
+            Setting("law", one_of(None, *LAWS), None, "null: the mesh's own, or elastic", "material card model"),
+            Setting("density", number(0.0, above=True, optional=True), None, "", "material card density"),
+            *(Setting(name, parse, None, ", ".join(laws)) for name, (parse, laws) in law_parameters().items()),
+            Setting("hardening", pairs, None, "von_mises: [[plastic strain, yield stress], ..]"),
+            Setting("velocity", vector, [0.0, 0.0, 0.0], "initial velocity", "velocity cards"),
+            Setting(
+                "bc",
+                one_of(*BOUNDARY_CODES),
+                "",
+                "directions in which it is held: x y z xy yz xz xyz",
+                "particle cards",
+            ),
+            Setting("thickness", number(0.0, above=True, optional=True), None, "of shells; null: the mesh's own"),
+            Setting("area", number(0.0, above=True, optional=True), None, "of trusses and beams"),
+        ),
+        "by part: its name in the mesh, or its number; what is null is the mesh's own",
+        named=True,
+    ),
+    Group(
+        "sets",
+        (
+            Setting("fixed", dofs, "", "held: all, or words of x y z rx ry rz", "node cards"),
+            Setting("displacement", some_vector, None, "[x, y, z], null: free in that direction", "card 15-8"),
+            Setting("force", vector, [0.0, 0.0, 0.0], "on each node", "card 15-1"),
+            Setting("function", word, None, "of time, for displacement and force; null: a ramp to 1 at the end"),
+        ),
+        "FEM deck: by set of nodes: its name in the mesh, or its number",
+        named=True,
+    ),
+    Group(
+        "functions",
+        (Setting("points", pairs, [[0.0, 0.0], [1.0, 1.0]], "[time, value], ..", "card 14"),),
+        "FEM deck: functions of time by name",
+        named=True,
+    ),
+    Group(
+        "fem",
+        (
+            Setting("analysis", one_of("static", "dynamic", "eigenvalues"), "static", "", "card 4"),
+            Setting("steps", count, 1, "of equal length, to end_time", "card 8"),
+            Setting(
+                "kinematics",
+                one_of("linear", "total_lagrange", "updated_lagrange"),
+                "linear",
+                "linear: small displacements, whatever the material",
+                "card 13 IATYP",
+            ),
+            Setting(
+                "method",
+                one_of("modified_newton", "aitken", "newton", "line_search", "bfgs"),
+                "newton",
+                "of iteration, where something is not linear",
+                "card 9 METOD",
+            ),
+            Setting("max_iterations", count, 50, "", "card 9 MAXIT"),
+            Setting("energy_tolerance", number(0.0), 1e-6, "relative; 0: not asked", "card 9 TOLE"),
+            Setting("force_tolerance", number(0.0), 0.0, "relative; 0: not asked", "card 9 TOLS"),
+            Setting("mass", one_of("consistent", "lumped"), "consistent", "", "card 8-1"),
+            Setting("eigenvalues", count, 10, "how many", "card 8-3"),
+            Setting("shells", one_of("bathe_dvorkin", "isoparametric"), "bathe_dvorkin", "four-node shells", "card 13"),
+            Setting("thickness_points", count, 2, "of integration through a shell", "card 13 a"),
+        ),
+        "FEM deck: the analysis",
+    ),
+)
