@@ -28,14 +28,20 @@ def convert(
     numbers: Mapping[str, float] | None = None,
     dialect: str | None = None,
     strict: bool = False,
+    allow_outside: bool = False,
 ) -> dict[str, Any]:
     """Translate files; returns the keys of `zrno convert --json` and `notes`.
 
     A mesh becomes particles where the target is a particle deck: particles, spacing, parts and settings say how. parts:
     of any mesh, only these. numbers: parameters of a .geo script. dialect: of the .mcm that is written. strict: what
-    the target cannot say is an error. Raises InputError and ValueError; nothing is written then.
+    the target cannot say is an error. allow_outside: files that a source includes may stand outside its folder. Raises
+    InputError and ValueError; nothing is written then.
     """
-    model = merge([_read(source, numbers) for source in sources])
+    models = [_read(source, numbers, allow_outside=allow_outside) for source in sources]
+    lacking = [what for model in models for what in model.incomplete]
+    if lacking:
+        raise ValueError("nothing can be made of a source that lacks what it names: " + "; ".join(lacking[:5]))
+    model = merge(models)
     source = model.summary()
     report = Report()
     if len(sources) > 1:
@@ -82,10 +88,10 @@ def report_text(result: Mapping[str, Any]) -> str:
     return "\n".join([*result["notes"], *losses(result, "approximated", "dropped")])
 
 
-def _read(path: Path, numbers: Mapping[str, float] | None) -> Model:
+def _read(path: Path, numbers: Mapping[str, float] | None, *, allow_outside: bool) -> Model:
     if not numbers:
-        model = read(path, paired=True)
-        return model if half_of_a_pair(model) else read(path)
+        model = read(path, paired=True, allow_outside=allow_outside)
+        return model if half_of_a_pair(model) else read(path, allow_outside=allow_outside)
     if path.suffix.lower() != ".geo":
         raise ValueError(f"{path}: numbers are parameters of a .geo script")
     from zrno.translators.gmsh.geo import read as read_geo

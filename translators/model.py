@@ -189,6 +189,8 @@ class Model:
     velocity_overrun: int = 0  # velocity cards past the last particle: a coupled deck's finite element nodes
     includes: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
+    incomplete: list[str] = field(default_factory=list)  # what is named but not there: no target can be made of it
+    native: dict[str, Any] = field(default_factory=dict)  # by format: what only its own writer understands
 
     def element_counts(self) -> dict[str, int]:
         """Elements of each kind, in all blocks; particles of a mesh are not among them."""
