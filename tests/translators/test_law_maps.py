@@ -67,6 +67,14 @@ def test_a_curved_table_says_how_far_it_is_off() -> None:
     assert "off by up to 0.4 in stress" in report.approximated[0].where
 
 
+def test_a_table_that_begins_at_no_stress_still_yields_somewhere() -> None:
+    steel = material("von_mises", E=2e5, nu=0.33)
+    steel.tables["hardening"] = np.array([[0.0, 0.0], [0.01, 1170.0], [0.04, 1240.0]])
+    found = as_known(steel, only("von_mises"), {}, None, Report())
+    assert found is not None
+    assert found.parameters["yield_stress"] > 300
+
+
 def test_drucker_prager_meets_mohr_coulomb_in_triaxial_compression() -> None:
     c, phi = 3.0, 30.0
     report = Report()
