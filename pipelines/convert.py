@@ -11,6 +11,7 @@ import numpy as np
 
 from zrno.translators import Model, Report, load_settings, read, write
 from zrno.translators.convert import part_number, to_particles
+from zrno.translators.fem import to_fem
 from zrno.translators.merge import merge
 from zrno.translators.particles import chosen_parts
 from zrno.translators.rewire import keep_parts
@@ -32,10 +33,10 @@ def convert(
 ) -> dict[str, Any]:
     """Translate files; returns the keys of `zrno convert --json` and `notes`.
 
-    A mesh becomes particles where the target is a particle deck: particles, spacing, parts and settings say how. parts:
-    of any mesh, only these. numbers: parameters of a .geo script. dialect: of the .mcm that is written. strict: what
-    the target cannot say is an error. allow_outside: files that a source includes may stand outside its folder. Raises
-    InputError and ValueError; nothing is written then.
+    A mesh becomes particles where the target is a particle deck (particles, spacing, parts and settings say how), and a
+    finite element model where it is a FEM deck. parts: of any mesh, only these. numbers: parameters of a .geo script.
+    dialect: of the .mcm that is written. strict: what the target cannot say is an error. allow_outside: files that a
+    source includes may stand outside its folder. Raises InputError and ValueError; nothing is written then.
     """
     models = [_read(source, numbers, allow_outside=allow_outside) for source in sources]
     lacking = [what for model in models for what in model.incomplete]
@@ -57,8 +58,11 @@ def convert(
             raise ValueError("--particles and --spacing make a particle deck (.mcm) of a mesh")
         if parts:
             model = _only(model, parts, report)
-        if settings is not None:
-            raise ValueError("--settings make a particle deck (.mcm) of a mesh")
+        if kind == ".dat" and (model.fem_control is None or settings is not None):
+            model, made = to_fem(model, settings or load_settings())
+            report.extend(made)
+        elif settings is not None:
+            raise ValueError("--settings make a deck (.mcm or .dat) of a mesh")
     report.extend(_write(model, target, {} if dialect is None else {"dialect": dialect}, report if strict else None))
     return {
         "source": source,

@@ -14,11 +14,13 @@ from zrno.translators.model import Material, Model
 from zrno.translators.report import Report
 from zrno.translators.settings import Settings
 
+ANY = "*"  # in place of a part's name: all parts that have no entry of their own
+
 
 def settings_of(settings: Settings, model: Model, part: int) -> tuple[str, dict[str, Any] | None]:
-    """The name by which the settings know a part (its name, or its number), and their entry of its material."""
+    """The name by which the settings know a part (its name, its number, or * for any), and their entry of it."""
     entries = settings["materials"]
-    for name in (model.parts[part].name, str(part)):
+    for name in (model.parts[part].name, str(part), ANY):
         if name in entries:
             return name, entries[name]
     return model.parts[part].name or str(part), None
@@ -32,7 +34,7 @@ def materials_of(model: Model, parts: Sequence[int], settings: Settings, report:
     names = {key for number, part in model.parts.items() for key in (part.name, str(number)) if key}
     for group in ("materials", "contact_laws"):
         for name in settings[group]:
-            if name not in names:
+            if name not in names and name != ANY:
                 expected = "one of " + ", ".join(sorted(names)[:20])
                 settings.fault((group, name), f"{group} of a part that the mesh does not have", name, expected)
     found: dict[int, Material] = {}

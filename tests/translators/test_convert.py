@@ -119,6 +119,18 @@ def test_materials_that_are_not_whole(mesh: Model, change: dict, said: str) -> N
     assert said in str(caught.value)
 
 
+def test_one_material_for_all_parts_that_have_none(mesh: Model) -> None:
+    steel = {"density": 7.8, "E": 200, "nu": 0.3}
+    given = {f"materials.*.{key}": value for key, value in steel.items()}
+    given |= {"materials.left.density": 1, "materials.left.E": 100, "materials.left.nu": 0.1}
+    given |= {"contact": "potential", "contact_laws.*.strength": 3}
+    model, _ = to_particles(mesh, load_settings(overrides=given))
+    left, right = model.materials.values()
+    assert (left.name, left.density, left.parameters["E"]) == ("left", 1, 100)
+    assert (right.name, right.density, right.parameters["E"]) == ("right", 7.8, 200)
+    assert model.particle_control.contact_laws == [(3.0, 4.0)] * 2
+
+
 def test_a_part_without_a_material(mesh: Model) -> None:
     with pytest.raises(InputError, match=r"a part has no material \(left\)"):
         to_particles(mesh, load_settings())
