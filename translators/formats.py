@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -49,6 +50,9 @@ def find(path: Path | str) -> Format:
         # a gmsh mesh under another name, say .neu
         if head.startswith(b"$MeshFormat") and by_extension.name != "msh":
             return next(f for f in FORMATS if f.name == "msh")
+        # pieces of keyword decks have other extensions too: .inc, .asc
+        if by_extension is _MESHIO and re.search(rb"^\*KEYWORD\b", head, re.MULTILINE):
+            return next(f for f in FORMATS if f.name == "lsdyna")
     return by_extension
 
 

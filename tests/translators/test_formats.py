@@ -69,6 +69,11 @@ def test_a_mesh_under_another_name(tmp_path: Path, shared: Path) -> None:
     assert read(tmp_path / "mesh.neu").format == "msh"
 
 
+def test_a_keyword_deck_under_another_name(tmp_path: Path) -> None:
+    (tmp_path / "piece.inc").write_text("$ a comment\n*KEYWORD\n*NODE\n1,2.,3.,4.\n")
+    assert read(tmp_path / "piece.inc").xyz.tolist() == [[2.0, 3.0, 4.0]]
+
+
 def test_targets_that_are_not_written(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match=r"not written; expected one of \.mcm, \.msh, \.k, "):
         write(Model(), tmp_path / "a.stl")

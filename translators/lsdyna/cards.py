@@ -174,6 +174,8 @@ class Card:
         if any(f.kind == "a" for f in fields):
             return
         places = [(m.start(), m[0]) for m in re.finditer(r"\S+", text)]
+        if not any(start < f.end < start + len(t) for start, t in places for f in fields):
+            return
         whole = len(places)
         if len(places) > len(fields) or not all(_is_value(t) for _, t in places):
             ids = [f for f in fields if f.kind == "i"]
@@ -208,6 +210,15 @@ class Card:
             self.fault(name, f"{name} is not an integer", "a whole number", index)
             return 0
         return int(number)
+
+
+def heading(deck: Deck, block: Block, rows: list[int], named: bool) -> tuple[int, str]:
+    """The number and the text of a card that _ID puts before another; it is taken from the rows."""
+    if not named or not rows:
+        return 0, ""
+    card = Card(deck, block, rows.pop(0), "id/i")
+    width = block.widths.of(10)
+    return int(card["id"]), block.file.words(card.row)[width:].strip()
 
 
 class Table:

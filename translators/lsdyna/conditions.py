@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from zrno.translators.lsdyna.cards import Card, Table
+from zrno.translators.lsdyna.cards import Card, Table, heading
 from zrno.translators.lsdyna.deck import Deck
 from zrno.translators.lsdyna.keywords import Registry, take
 from zrno.translators.lsdyna.lexer import Block
@@ -43,12 +43,9 @@ def _spc(deck: Deck, block: Block, options: list[str]) -> bool:
         return True
     for start in range(0, len(rows), per):
         group = rows[start : start + per].tolist()
-        number, name = 0, ""
-        if named:
-            head = Card(deck, block, group.pop(0), "id/i")
-            number, name = head["id"], block.file.words(head.row)[10:].strip()
-            if not group:
-                break
+        number, name = heading(deck, block, group, named)
+        if not group:
+            break
         card = Card(deck, block, group[0], spec)
         if card.blank():
             continue
@@ -104,10 +101,7 @@ def _curve(deck: Deck, block: Block, options: list[str]) -> bool:
     title = take(options, "TITLE")
     if options:
         return False
-    rows = block.rows(blank=title)
-    name = ""
-    if title and len(rows):
-        name, rows = block.file.words(int(rows[0])).strip(), rows[1:]
+    name, rows = block.titled(title, blank=False)
     if not len(rows):
         return True
     head = Card(deck, block, int(rows[0]), "lcid/i sidr/i sfa sfo offa offo dattyp/i lcint/i")
@@ -152,8 +146,8 @@ def _system(deck: Deck, block: Block, options: list[str]) -> bool:
     title = take(options, "TITLE")
     if options:
         return False
-    rows = block.rows().tolist()
-    name = block.file.words(rows.pop(0)).strip() if title and rows else ""
+    name, found = block.titled(title)
+    rows = found.tolist()
     if not rows:
         return True
     kind = block.name.split("_")[2]

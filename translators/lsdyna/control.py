@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from zrno.translators.lsdyna.cards import Card
+from zrno.translators.lsdyna.cards import Card, heading
 from zrno.translators.lsdyna.deck import Deck
 from zrno.translators.lsdyna.keywords import Registry, take
 from zrno.translators.lsdyna.lexer import Block
@@ -69,10 +69,7 @@ def _contact(deck: Deck, block: Block, options: list[str]) -> bool:
         return False
     rows = block.rows()
     places = rows.tolist()
-    number, name = 0, ""
-    if named and places:
-        head = Card(deck, block, places.pop(0), "id/i")
-        number, name = head["id"], block.file.words(head.row)[block.widths.of(10) :].strip()
+    number, name = heading(deck, block, places, named)
     if not places:
         return False
     first = Card(deck, block, places[0], "a/i b/i atyp/i btyp/i abox/i bbox/i apr/i bpr/i")

@@ -156,6 +156,13 @@ class Block:
                 break
         return rows
 
+    def titled(self, titled: bool, *, blank: bool = True) -> tuple[str, Ints]:
+        """The title, where the keyword has one, and the data lines behind it."""
+        rows = self.rows()
+        name = self.file.words(int(rows[0])).strip() if titled and len(rows) else ""
+        rows = rows[int(titled) :]
+        return name, rows if blank else rows[~self._blank(rows)]
+
     def blank_behind(self, rows: Ints, count: int) -> Ints:
         """The data lines with up to `count` of the blank ones behind them, which are cards where cards are counted."""
         every = self.first + np.flatnonzero(self.file.first[self.first : self.last] != _DOLLAR)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from zrno.translators.lsdyna.cards import Card, Table
+from zrno.translators.lsdyna.cards import Card, Table, heading
 from zrno.translators.lsdyna.conditions import lifetime
 from zrno.translators.lsdyna.deck import Deck
 from zrno.translators.lsdyna.keywords import Registry, take
@@ -34,12 +34,9 @@ def _motion(deck: Deck, block: Block, options: list[str]) -> bool:
     kind = block.name.split("_")[3]
     rows = block.rows().tolist()
     while rows:
-        number, name = 0, ""
-        if named:
-            head = Card(deck, block, rows.pop(0), "id/i")
-            number, name = head["id"], block.file.words(head.row)[10:].strip()
-            if not rows:
-                break
+        number, name = heading(deck, block, rows, named)
+        if not rows:
+            break
         card = Card(deck, block, rows.pop(0), "target/i dof/i vad/i lcid/i sf vid/i death birth")
         if card.blank():
             continue
@@ -176,12 +173,9 @@ def _segment(deck: Deck, block: Block, options: list[str]) -> bool:
     rows = block.rows().tolist()
     spec = "ssid/i lcid/i sf at" if of_set else "lcid/i sf at nodes/i*5"
     while rows:
-        number, name = 0, ""
-        if named:
-            head = Card(deck, block, rows.pop(0), "id/i")
-            number, name = head["id"], block.file.words(head.row)[10:].strip()
-            if not rows:
-                break
+        number, name = heading(deck, block, rows, named)
+        if not rows:
+            break
         card = Card(deck, block, rows.pop(0), spec)
         if card.blank():
             continue

@@ -10,7 +10,7 @@ from zrno.translators.lsdyna.deck import Deck
 from zrno.translators.lsdyna.keywords import Registry, take
 from zrno.translators.lsdyna.lexer import Block
 from zrno.translators.model import Eos, Material
-from zrno.translators.text import Ints, parse_real
+from zrno.translators.text import parse_real
 
 MATERIALS = Registry()
 
@@ -26,10 +26,9 @@ def _law(deck: Deck, block: Block, options: list[str]) -> bool:
     if not options or options[0] in _NO_MATERIAL or options[0].startswith("T0"):
         return False
     row = laws.find(keyword)
-    rows = block.rows()
     if row is None:
-        return _other(deck, block, rows, keyword, title=title)
-    places = rows.tolist()
+        return _other(deck, block, keyword, title=title)
+    places = block.rows().tolist()
     while places:
         name = block.file.words(places.pop(0)).strip() if title else ""
         if not places:
@@ -81,11 +80,9 @@ def _known(deck: Deck, block: Block, rows: list[int], row: laws.LawRow, name: st
         deck.model.equations_of_state[number] = Eos(number, name, said.law, said.parameters, native, source)
 
 
-def _other(deck: Deck, block: Block, rows: Ints, keyword: str, *, title: bool) -> bool:
+def _other(deck: Deck, block: Block, keyword: str, *, title: bool) -> bool:
     """A law that the vocabulary lacks: number, density, and its cards as they are."""
-    name = ""
-    if title and len(rows):
-        name, rows = block.file.words(int(rows[0])).strip(), rows[1:]
+    name, rows = block.titled(title)
     if not len(rows):
         return True
     first = Card(deck, block, int(rows[0]), "id/a ro/a")

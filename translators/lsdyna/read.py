@@ -151,7 +151,7 @@ def _parameter(deck: Deck, block: Block, options: list[str]) -> None:
         card = Card(deck, block, row, "pair/a*8")
         pieces = [piece for _, piece in card.texts["pair"]]
         pairs = [pair for pair in zip(pieces[::2], pieces[1::2], strict=True) if pair[0]][:per_line]
-        if any(not _one_word(value) for name, value in pairs if name[0] not in "Cc"):
+        if any(not _one_word(name[1:]) or not _one_word(value) for name, value in pairs if name[0] not in "Cc"):
             # across the borders of the columns: letter, name, value between blanks
             pairs = [(kind + name, value) for kind, name, value in _PAIR.findall(text)] or pairs
         for name, value in pairs:

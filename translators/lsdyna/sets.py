@@ -58,10 +58,7 @@ def _set(deck: Deck, block: Block, options: list[str]) -> bool:
         return False
     if kind == "segment" and layout not in ("", "GENERAL", "ADD"):
         return False
-    rows = block.rows()
-    name = ""
-    if title and len(rows):
-        name, rows = block.file.words(int(rows[0])).strip(), rows[1:]
+    name, rows = block.titled(title)
     if not len(rows):
         return True
     head = Card(deck, block, int(rows[0]), "sid/i da/a*5")

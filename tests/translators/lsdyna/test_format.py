@@ -103,7 +103,7 @@ def test_coordinates_are_the_nearest_doubles(deck: Read) -> None:
     rng = random.Random(2)
     texts = []
     for _ in range(1_000_000):
-        digits, exponent = rng.randint(1, 10), rng.randint(-99, 99)
+        digits, exponent = rng.randint(1, 9), rng.randint(-99, 99)
         text = f"{rng.choice(' -')}{rng.randint(0, 9)}.{rng.randrange(10**digits):0{digits}d}"
         texts.append(text + (f"E{exponent:+03d}" if rng.random() < 0.7 else ""))
     texts += ["0.0"] * (-len(texts) % 3)
@@ -117,6 +117,16 @@ def test_rows_that_slip_out_of_their_columns_are_understood_and_said(deck: Read)
         f"{i:20d}{i * 1.5:.15e}{-2.5:.15e}{0.1:.15e}{0:20d}{0:20d}" for i in (1, 2)))  # fmt: skip
     assert model.xyz.tolist() == [[1.5, -2.5, 0.1], [3.0, -2.5, 0.1]]
     assert "2 rows have texts across the borders of their columns" in model.warnings[0]
+
+
+def test_a_row_of_blanks_between_numbers(deck: Read) -> None:
+    assert deck("*NODE\n1 2.5 -3. 1e3\n").xyz.tolist() == [[2.5, -3.0, 1000.0]]
+
+
+def test_a_parameter_that_is_not_defined_moves_nothing(deck: Read) -> None:
+    model = deck("*NODE\n       1                             &x\n", partial=True)
+    assert model.xyz.tolist() == [[0.0, 0.0, 0.0]]
+    assert model.warnings == ["parameter &x is not defined in the file"]
 
 
 def test_what_stands_before_and_between_keywords(deck: Read, cube: str) -> None:

@@ -70,6 +70,7 @@ MATERIAL = "*MAT_ELASTIC\n         1     1E-09{:>10}       0.3\n"
         ("*PARAMETER\nR        a      70.0\n*PARAMETER_EXPRESSION\nR      val  a*3\n", "&val"),
         ("*PARAMETER\nR        a      70.0\n", "<a*3>"),
         ("*PARAMETER\nR   vals   210.0\n", "&vals"),
+        ("*PARAMETER\nR dt     2.1e2\n", "&dt"),
     ],
 )  # fmt: skip
 def test_a_parameter_stands_for_its_value(deck: Read, definition: str, field: str) -> None:
