@@ -70,7 +70,9 @@ def reals(values: Floats, width: int) -> tuple[Text, Floats]:
     _decimals(text, said, rows, size, negative, width)
     if len(rest):  # 0.0025 is nicer than 2.5E-3, where it is as exact
         _decimals(text, said, rest[small[rest]], size, negative, width)
-        _powers(text, said, rest[said[rest] != size[rest]], size, negative, width)
+        powers = rest[said[rest] != size[rest]]
+        _powers(text, said, powers, size, negative, width)
+        _as_it_will_be_again(text, said, powers[small[powers]], size, negative, width)
     _alone(text, said, np.flatnonzero(odd), size, negative, width)
     return text, np.where(negative, -said, said)
 
@@ -90,6 +92,19 @@ def _decimals(text: Text, said: Floats, rows: Ints, size: Floats, negative: NDAr
     for count in np.flatnonzero(np.bincount(decimals)).tolist():
         these = decimals == count
         _put(text, rows[these], digits[these], count, negative, width)
+
+
+def _as_it_will_be_again(
+    text: Text, said: Floats, rows: Ints, size: Floats, negative: NDArray[np.bool_], width: int
+) -> None:
+    """Small numbers that a power rounded: as 0.0025 where the rounded number is that, which is how it is written when
+    the text is read and written again."""
+    powered, rounded = text[rows], said[rows]
+    target = size.copy()
+    target[rows] = rounded
+    _decimals(text, said, rows, target, negative, width)
+    other = said[rows] != rounded
+    text[rows[other]], said[rows[other]] = powered[other], rounded[other]
 
 
 def _trimmed(digits: Ints, decimals: Ints) -> tuple[Ints, Ints]:

@@ -23,6 +23,7 @@ from zrno.translators.sections import thickness_of
 from zrno.translators.settings import Settings
 
 _FAMILIES = ("solid", "shell", "plane", "beam", "truss")  # that a .dat deck can say
+_FIRST_ORDER = {"wedge15": "wedge6", "wedge18": "wedge6", "pyramid13": "pyramid5"}
 _BENDING = ("shell", "beam")  # with rotations at their nodes
 _LAWS: dict[str, tuple[str, ...]] = {  # of a .dat deck, with the parameters that its cards have
     "elastic": ("E", "nu"),
@@ -69,11 +70,17 @@ def to_fem(model: Model, settings: Settings) -> tuple[Model, Report]:
 def _blocks(model: Model, report: Report) -> list[ElementBlock]:
     """The blocks that a deck can say, each with its family; the others are reported."""
     kept = []
-    for block in model.blocks:
+    for given in model.blocks:
+        block = given
         family = block.family or _family(model, block)
         if family == "tshell":
             report.approximate(f"thick shells ({block.kind})", len(block.ids), "written as solids")
             family = "solid"
+        if block.kind in _FIRST_ORDER:
+            what = f"{block.kind} elements"
+            report.approximate(what, len(block.ids), "of first order: a .dat deck has no others of this shape")
+            kind = _FIRST_ORDER[block.kind]
+            block = replace(block, kind=kind, nodes=block.nodes[:, : TABLE[kind].nodes])
         mine = np.isin(block.part, list(model.parts))
         if family in PARTICLE_FAMILIES:
             report.drop("particles", len(block.ids), "a .dat deck has none: write them to an .mcm deck")
