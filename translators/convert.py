@@ -9,7 +9,7 @@ import numpy as np
 
 from zrno.translators import held
 from zrno.translators.law_maps import as_known
-from zrno.translators.materials import materials_of, settings_of
+from zrno.translators.materials import ANY, materials_of, settings_of
 from zrno.translators.mcm.cards import LAWS as MCM_LAWS
 from zrno.translators.model import PARTICLE_FAMILIES, Eos, Material, Model, Part, ParticleControl, Particles
 from zrno.translators.particles import Filling, chosen_parts, copy_nodes, fill, on_shells, own_particles
@@ -43,7 +43,7 @@ def to_particles(
     report = Report()
     asked = None if parts is None else [part_number(model, part) for part in parts]
     chosen = _parts(model, asked, particles)
-    materials = materials_of(model, chosen, settings)
+    materials = materials_of(model, chosen, settings, report)
     chosen = _with_laws(model, chosen, materials, report)
     filling = _filled(model, settings, particles, spacing, chosen)
     dimension = 2 if model.dimension == 2 else 3
@@ -219,7 +219,7 @@ def _control(model: Model, target: Model, settings: Settings, dimension: int, re
         control.dialect = "2019-10"
     if control.contact:
         for material in target.materials.values():
-            law = laws.get(material.name) or laws.get(material.name.removeprefix("part "))
+            law = laws.get(material.name) or laws.get(material.name.removeprefix("part ")) or laws.get(ANY)
             if law is None:
                 expected = f"contact_laws: {{{material.name}: {{strength: K, exponent: n}}}}"
                 settings.fault(("contact",), "a part has no contact law", material.name, expected)

@@ -183,12 +183,19 @@ class Layout:
 
 
 class Block:
-    """Cards of one layout. values: an array a numeric field, shape (n,), by name (int64 or float64)."""
+    """Cards of one layout. values: an array a numeric field, shape (n,), by name (int64 or float64).
 
-    def __init__(self, cards: Cards, layout: Layout, first: int, count: int) -> None:
+    step: every how manieth card of the deck is one of them; quiet: no faults are noted, what is no number is 0.
+    """
+
+    def __init__(
+        self, cards: Cards, layout: Layout, first: int, count: int, *, step: int = 1, quiet: bool = False
+    ) -> None:
         self.layout = layout
         self._cards = cards
         self._first = first
+        self._step = step
+        self._quiet = quiet
         self._faulty: set[tuple[int, str]] = set()
         numeric = [f for f in layout.fields.values() if f.kind != "a"]
         if count * len(numeric) < _FEW:
@@ -196,7 +203,7 @@ class Block:
             return
         from zrno.translators import scan
 
-        spans = cards.spans(first, first + count)
+        spans = cards.spans(first, first + count * step, step)
         fields = [(f.start, f.end, -1 if f.kind == "i" else f.implied) for f in numeric]
         arrays, care = scan.fixed(*spans, fields)
         self.values = {f.name: array for f, array in zip(numeric, arrays, strict=True)}
@@ -212,22 +219,26 @@ class Block:
 
     def line(self, i: int) -> int:
         """Line of card i in its file, from 1."""
-        return self._cards.line(self._first + i)
+        return self._cards.line(self._first + i * self._step)
+
+    def whole(self, i: int = 0) -> str:
+        """The line of card i."""
+        return self._cards.text(self._first + i * self._step)
 
     def text(self, name: str, i: int = 0) -> str:
         """The text of a field of card i, without the blanks around it."""
         f = self.layout.fields[name]
-        return self._cards.text(self._first + i)[f.start : f.end].strip()
+        return self.whole(i)[f.start : f.end].strip()
 
     def place(self, name: str, i: int = 0) -> tuple[int, int]:
         """Line and column of what a field of card i says; of its first column where it is blank."""
         f = self.layout.fields[name]
-        raw = self._cards.text(self._first + i)[f.start : f.end]
+        raw = self.whole(i)[f.start : f.end]
         return self.line(i), f.start + 1 + (len(raw) - len(raw.lstrip()) if raw.strip() else 0)
 
     def fault(self, i: int, name: str, message: str, expected: str = "") -> None:
         """Note a fault in a field of card i, unless it has one: what is no number is not also out of range."""
-        if (i, name) in self._faulty:
+        if self._quiet or (i, name) in self._faulty:
             return
         self._faulty.add((i, name))
         self._cards.faults.add(*self.place(name, i), message, self.text(name, i) or "blank", expected)
@@ -298,17 +309,21 @@ class Card:
 class Cards:
     """The cards of a deck in order: the lines of a text file without its comments.
 
-    comments: bytes that make a line a comment when they stand in its first column. An empty line is a card.
+    comments: bytes that make a line a comment when they stand in its first column, and in its second one of `second`
+    where such are named (past a line's end stand blanks). An empty line is a card.
     """
 
-    def __init__(self, path: Path | str, data: bytes, *, comments: bytes) -> None:
+    def __init__(self, path: Path | str, data: bytes, *, comments: bytes, second: bytes = b"") -> None:
         self.faults = Faults(str(path))
         self._data = data
         self._bytes = np.frombuffer(data, np.uint8)
         starts, ends = line_spans(data)
         self._lines = len(starts)
         first = self._bytes[np.minimum(starts, len(data) - 1)]
-        keep = np.flatnonzero(~_table(comments)[first] | (starts == ends))
+        marked = _table(comments)[first] & (starts < ends)
+        if second:
+            marked &= _table(second)[self._bytes[np.minimum(starts + 1, len(data) - 1)]] | (ends - starts == 1)
+        keep = np.flatnonzero(~marked)
         self._starts = starts[keep]
         self._ends = ends[keep]
         self._numbers = keep + 1
@@ -332,9 +347,9 @@ class Cards:
         """A card's line."""
         return self._data[self._starts[card] : self._ends[card]].decode("latin-1")
 
-    def spans(self, first: int, last: int) -> tuple[NDArray[np.uint8], Ints, Ints]:
-        """All bytes of the file, and where the cards first..last (excluded) start and end in them."""
-        return self._bytes, self._starts[first:last], self._ends[first:last]
+    def spans(self, first: int, last: int, step: int = 1) -> tuple[NDArray[np.uint8], Ints, Ints]:
+        """All bytes of the file, and where the cards first..last (excluded), or every step-th, start and end in them."""
+        return self._bytes, self._starts[first:last:step], self._ends[first:last:step]
 
     def grid(self, first: int, last: int, width: int) -> NDArray[np.uint8]:
         """Bytes of the cards first..last (excluded), shape (n, width): cut, and filled with blanks."""
@@ -364,15 +379,31 @@ class Cards:
         """The next cards, at most `count`, without going past them."""
         return Block(self, layout, self._next, min(count, self.left))
 
+    def probe(self, layout: Layout, count: int, cards: int = 1) -> Block:
+        """At most `count` of the next cards, every `cards`-th, without going past them and without noting faults."""
+        return Block(self, layout, self._next, min(count, -(-self.left // cards)), step=cards, quiet=True)
+
+    def lengths(self, count: int, step: int = 1, skip: int = 0) -> Ints:
+        """Bytes of the next `count` cards, or of every step-th, the first `skip` left out."""
+        _, starts, ends = self.spans(self._next + skip, self._next + skip + count * step, step)
+        return ends - starts
+
     def block(self, layout: Layout, count: int, what: str) -> Block:
         """The next `count` cards; raises InputError where the file ends before them."""
-        block = Block(self, layout, self._next, min(count, self.left))
-        if count > self.left:
-            number = f" {self.left + 1} of {count}" if count > 1 else ""
+        return self.blocks([layout], count, what)[0]
+
+    def blocks(self, layouts: Sequence[Layout], count: int, what: str) -> list[Block]:
+        """The next `count` groups of cards, a layout each card of a group; raises InputError where the file ends."""
+        cards = len(layouts)
+        whole = min(count, self.left // cards)
+        first = self._next
+        blocks = [Block(self, layout, first + k, whole, step=cards) for k, layout in enumerate(layouts)]
+        if count > whole:
+            number = f" {whole + 1} of {count}" if count > 1 else ""
             self.faults.add(self._lines + 1, 1, "the file ends here", expected=f"{what}{number}")
             self.faults.stop()
-        self._next += count
-        return block
+        self._next += count * cards
+        return blocks
 
     def card(self, layout: Layout, what: str) -> Card:
         """The next card; raises InputError where the file ends before it."""
