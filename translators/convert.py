@@ -66,7 +66,8 @@ def to_particles(
         own = mass[number == k]
         h[k - 1] = _smoothing_length(model, part, filling, settings)
         target.materials[k] = _material(model.parts[part], k, materials[part], own, h[k - 1], settings, target)
-    if any(np.ptp(mass[number == k]) > 1e-9 * mass[number == k].max() for k in numbers.values()):
+    uneven = any(np.ptp(mass[number == k]) > 1e-9 * mass[number == k].max() for k in numbers.values())
+    if uneven or any(not _fits(material.mass) for material in target.materials.values()):
         target.particles.mass = mass
     target.particle_control = _control(model, target, settings, dimension, report)
     _report_lost(model, chosen, filling, report)
@@ -155,6 +156,11 @@ def _masses(filling: Filling, density: Any) -> Any:
     if spacing is not None and filling.mass is not None:
         mass = np.where(np.isnan(filling.mass), np.where(np.isnan(mass), density * spacing**3, mass), filling.mass)
     return mass
+
+
+def _fits(mass: float) -> bool:
+    """Whether the deck's ten columns hold a part's mass to 1e-9; else its particles' masses are written, in twenty."""
+    return abs(float(real_text(mass, 10)[0]) - mass) <= 1e-9 * mass
 
 
 def _smoothing_length(model: Model, part: int, filling: Filling, settings: Settings) -> float:

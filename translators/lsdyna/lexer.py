@@ -84,7 +84,7 @@ class File:
     def keywords(self, widths: Widths) -> Iterator[Block]:
         """The keywords of the file in order, up to *END. widths: of the including file; *KEYWORD may change them."""
         lines = np.flatnonzero(self.first == _STAR)
-        ends = np.append(lines, len(self.starts))[1:]
+        ends = np.append(lines[1:], len(self.starts))[: len(lines)]  # none where there is no keyword
         for line, end in zip(lines.tolist(), ends.tolist(), strict=True):
             match = _KEYWORD.match(self.text(line)[:400])
             if match is None:

@@ -39,8 +39,9 @@ class Mesh:
         """The largest number that stands in ten columns of a set."""
         model = self.model
         members = [*(s.elements for s in model.element_sets), *(s.parts for s in model.part_sets)]
-        lists: tuple[Sequence[Any], ...] = (model.node_sets, model.element_sets, model.part_sets, model.segment_sets)
-        return max([0, *(int(m.max(initial=0)) for m in members), *(int(s.id) for some in lists for s in some)])
+        numbers = [s.id for s in model.node_sets] + [s.id for s in model.element_sets]
+        numbers += [s.id for s in model.part_sets] + [s.id for s in model.segment_sets]
+        return max([0, *numbers, *(int(m.max(initial=0)) for m in members)])
 
     def largest_id(self) -> int:
         """The largest number that stands in eight columns."""

@@ -40,6 +40,12 @@ def test_files_within_files_are_sought_beside_them_first(deck: Read) -> None:
     assert [Path(path).name for path in model.includes] == ["a.k", "b.k"]
 
 
+def test_an_included_file_without_keywords(deck: Read) -> None:
+    model = deck("*KEYWORD\n*INCLUDE\nnone.k\n" + NODE, files={"none.k": "hello\n$ a comment\n"})
+    assert len(model.xyz) == 1
+    assert any("text before the first keyword is not read" in warning for warning in model.warnings)
+
+
 def test_end_ends_its_own_file_alone(deck: Read) -> None:
     model = deck("*INCLUDE\na.k\n*TITLE\nmain\n", files={"a.k": NODE + "*END\n*TITLE\nnever\n"})
     assert model.title == "main"
