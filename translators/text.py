@@ -348,7 +348,7 @@ class Cards:
         return self._data[self._starts[card] : self._ends[card]].decode("latin-1")
 
     def spans(self, first: int, last: int, step: int = 1) -> tuple[NDArray[np.uint8], Ints, Ints]:
-        """All bytes of the file, and where the cards first..last (excluded), or every step-th, start and end in them."""
+        """All bytes of the file, and where the cards first..last (excluded), or every step-th, start and end."""
         return self._bytes, self._starts[first:last:step], self._ends[first:last:step]
 
     def grid(self, first: int, last: int, width: int) -> NDArray[np.uint8]:
