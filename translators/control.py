@@ -73,7 +73,6 @@ class FemControl:
     free_format: bool = False  # INDFOR 1: numbers between blanks; decks are written in columns
     wide: bool = False  # IND56: numbers of nodes and elements in 10 columns, coordinates in 15
     options: tuple[int, int, int, int] = (0, 0, 0, 0)  # IDJERDAP, IOPIT, ISPRESEK, IRPRIT
-    substructures: int = 0  # JPS
     suppressed: tuple[int, ...] | None = None  # IOPGL: ux uy uz rx ry rz of all nodes; None: by what the elements have
     mixed_suppressed: tuple[int, ...] = (0, 0, 0, 0, 0, 0)  # IOPGS
     dynamic: int = 0  # NDIN

@@ -34,7 +34,7 @@ FORMATS = (
     Format("geo", (".geo",), "zrno.translators.gmsh.geo"),
     Format("lsdyna", (".k", ".key", ".dyn"), "zrno.translators.lsdyna", "zrno.translators.lsdyna"),
     Format("neu", (".neu",), "zrno.translators.neu"),
-    Format("pak", (".dat",), missing="PAK decks are not read yet"),
+    Format("pak", (".dat",), "zrno.translators.pak", "zrno.translators.pak"),
     Format("vtu", (".vtu",), "zrno.translators.meshio_bridge", "zrno.translators.meshio_bridge"),
 )
 _MESHIO = Format("meshio", (), "zrno.translators.meshio_bridge")

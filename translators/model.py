@@ -163,6 +163,7 @@ class Model:
     dimension: int = 3  # of the space: 2 where all is flat (constant z) and no volume or shell in space is meant
     node_ids: Ints = field(default_factory=lambda: np.empty(0, np.int64))
     xyz: Floats = field(default_factory=lambda: np.empty((0, 3)))
+    node_data: dict[str, NDArray[Any]] = field(default_factory=dict)  # (n, ...) each, by the source format's own names
     blocks: list[ElementBlock] = field(default_factory=list)
     parts: dict[int, Part] = field(default_factory=dict)
     sections: dict[int, Section] = field(default_factory=dict)

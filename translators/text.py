@@ -194,6 +194,7 @@ class Block:
         self.layout = layout
         self._cards = cards
         self._first = first
+        self._count = count
         self._step = step
         self._quiet = quiet
         self._faulty: set[tuple[int, str]] = set()
@@ -224,6 +225,12 @@ class Block:
     def whole(self, i: int = 0) -> str:
         """The line of card i."""
         return self._cards.text(self._first + i * self._step)
+
+    def letters(self, column: int) -> NDArray[np.uint8]:
+        """The byte in a column (from 0) of each card: (n,); a blank past its end."""
+        data, starts, ends = self._cards.spans(self._first, self._first + self._count * self._step, self._step)
+        at = starts + column
+        return np.where(at < ends, data[np.minimum(at, len(data) - 1)], np.uint8(_BLANK))
 
     def text(self, name: str, i: int = 0) -> str:
         """The text of a field of card i, without the blanks around it."""
@@ -343,12 +350,16 @@ class Cards:
         """Line of the next card."""
         return self.line(self._next)
 
+    def line_of(self, ahead: int) -> int:
+        """Line of the card that comes after `ahead` others."""
+        return self.line(self._next + ahead)
+
     def text(self, card: int) -> str:
         """A card's line."""
         return self._data[self._starts[card] : self._ends[card]].decode("latin-1")
 
     def spans(self, first: int, last: int, step: int = 1) -> tuple[NDArray[np.uint8], Ints, Ints]:
-        """All bytes of the file, and where the cards first..last (excluded), or every step-th, start and end."""
+        """All bytes of the file, and where the cards first..last (excluded; or every step-th) start and end in them."""
         return self._bytes, self._starts[first:last:step], self._ends[first:last:step]
 
     def grid(self, first: int, last: int, width: int) -> NDArray[np.uint8]:
@@ -379,9 +390,13 @@ class Cards:
         """The next cards, at most `count`, without going past them."""
         return Block(self, layout, self._next, min(count, self.left))
 
-    def probe(self, layout: Layout, count: int, cards: int = 1) -> Block:
-        """At most `count` of the next cards, every `cards`-th, without going past them and without noting faults."""
-        return Block(self, layout, self._next, min(count, -(-self.left // cards)), step=cards, quiet=True)
+    def probe(self, layout: Layout, count: int, step: int = 1, skip: int = 0) -> Block:
+        """At most `count` of the next cards, every step-th after the first `skip`, without going past them.
+
+        Nothing is noted of faults.
+        """
+        there = max(-(-(self.left - skip) // step), 0)
+        return Block(self, layout, self._next + skip, min(count, there), step=step, quiet=True)
 
     def lengths(self, count: int, step: int = 1, skip: int = 0) -> Ints:
         """Bytes of the next `count` cards, or of every step-th, the first `skip` left out."""
