@@ -12,6 +12,7 @@ from zrno.translators.text import Ints
 # What each offset of the card is added to.
 KINDS = ("node", "element", "part", "material", "set", "curve", "define", "other")
 _LARGEST = 2**62
+_LARGEST_FACTOR = 1e20  # of units: no power that a dimension has overflows
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,12 +44,15 @@ class Frame:
         added = {kind: self.offsets.get(kind, 0) + offsets.get(kind, 0) for kind in KINDS}
         if any(abs(number) > _LARGEST for number in added.values()):
             raise BadExpression("the offsets of nested includes are too large")
+        factors = (self.mass * mass, self.time * time, self.length * length)
+        if not all(1 / _LARGEST_FACTOR < factor < _LARGEST_FACTOR for factor in factors):
+            raise BadExpression("the factors of units are too large or too small")
         return replace(
             self,
             offsets={kind: number for kind, number in added.items() if number},
-            mass=self.mass * mass,
-            time=self.time * time,
-            length=self.length * length,
+            mass=factors[0],
+            time=factors[1],
+            length=factors[2],
             transformations=((tranid,) if tranid else ()) + self.transformations,
         )
 

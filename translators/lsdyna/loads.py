@@ -332,6 +332,8 @@ def _generation(deck: Deck, block: Block, rows: list[int], speed: float) -> None
         if not len(nodes):
             return
         velocity = v + np.cross(omega, deck.model.xyz[nodes] - centre)
+        if not np.isfinite(velocity).all():
+            deck.fault(block.file, row, 0, "the velocities are not finite numbers", str(target))
         rotation = np.tile(omega, (len(nodes), 1)) if omega.any() else None
         number = target if kind == 3 and not omega.any() else None
         deck.model.initial_velocities.append(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from zrno.translators.lsdyna import laws
@@ -68,6 +69,9 @@ def _known(deck: Deck, block: Block, rows: list[int], row: laws.LawRow, name: st
         said = laws.scaled(said, frame.scale)
         native = {"keyword": row.keyword}
     source = deck.source(block, rows[0])
+    if not all(map(math.isfinite, said.parameters.values())):
+        names = [name for name, value in said.parameters.items() if not math.isfinite(value)]
+        first.fault("mid" if is_material else "eosid", f"{', '.join(names)} cannot be worked out: numbers overflow")
     if is_material:
         _warn_twice(deck, block, rows[0], "material", number, number in deck.model.materials)
         density = float(first["ro"]) * frame.scale(mass=1, length=-3)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import numpy as np
+
 from zrno.translators.lsdyna import assemble
 from zrno.translators.lsdyna.cards import Card
 from zrno.translators.lsdyna.conditions import CONDITIONS
@@ -40,6 +42,11 @@ def read(path: Path | str, *, allow_outside: bool = False, partial: bool = False
     nodes that are not there are no faults, and stand in `Model.incomplete`. (A file without any node is a piece of a
     deck in either case.) Raises InputError with every fault, up to 20.
     """
+    with np.errstate(all="ignore"):  # what overflows is looked for where it matters, and a fault there
+        return _read(path, allow_outside=allow_outside, partial=partial)
+
+
+def _read(path: Path | str, *, allow_outside: bool, partial: bool) -> Model:
     model = Model(format="lsdyna", version="keyword")
     deck = Deck(model, partial=partial)
     reader = _Reader(deck, Path(path), allow_outside)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 PARTS_CARD = "pid/i secid/i mid/i eosid/i hgid/i grav/i adpopt/i tmid/i"
+_LARGEST = 1e60  # its fourth power is a number still
 Fields = Mapping[str, Any]
 
 _PLANES = {12: "stress", 13: "strain", 14: "axisymmetric", 15: "axisymmetric"}
@@ -70,7 +71,7 @@ def _beam(fields: Fields) -> dict[str, float]:
     names = {"area": "a", "iyy": "iss", "izz": "itt", "j": "j", "shear_area_y": "sa"}
     found = {name: float(fields[key]) for name, key in names.items() if fields.get(key)}
     s, t = float(fields.get("ts1", 0.0)), float(fields.get("tt1", 0.0))
-    if s > 0 and "area" not in found:
+    if 0 < s < _LARGEST and t < _LARGEST and "area" not in found:
         if fields.get("cst") == 1:  # a tube: outer and inner diameter
             second = math.pi / 64 * (s**4 - t**4)
             found |= {"area": math.pi / 4 * (s**2 - t**2), "iyy": second, "izz": second, "j": 2 * second}

@@ -256,6 +256,8 @@ def test_the_kind_of_analysis(deck: Read, text: str, kind: str) -> None:
         ("*PART\na\n0,1,1\n", ":12:1: error: a part's number is not positive (0)"),
         ("*DEFINE_COORDINATE_SYSTEM\n1,0.,0.,0.,1.,0.,0.\n2.,0.,0.\n", ":11:1: error: the axes of the coordinate"),
         ("*DEFINE_CURVE\n1,0,1e300,1e300\n1e300,1e300\n", "a curve's points are not finite"),
+        ("*SECTION_BEAM\n1,1\n1e200,1e200,1e200,1e200\n*MAT_193\n1,1.,1e308,.3\n",
+         ":14:1: error: E cannot be worked out"),
         ("*MAT_ELASTIC\n1,dense\n", ":11:3: error: ro is not a number (dense)"),
     ],
 )  # fmt: skip

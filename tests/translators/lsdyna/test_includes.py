@@ -51,6 +51,12 @@ def test_end_ends_its_own_file_alone(deck: Read) -> None:
     assert model.title == "main"
 
 
+def test_an_included_file_may_say_nothing(deck: Read) -> None:
+    model = deck("*INCLUDE\na.k\n*TITLE\nmain\n", files={"a.k": "$ nothing\nnot even this\n"})
+    assert model.title == "main"
+    assert "a.k:2: text before the first keyword is not read" in model.warnings[0]
+
+
 def test_a_missing_file_is_a_fault_of_the_line_that_names_it(deck: Read, tmp_path: Path) -> None:
     with pytest.raises(InputError) as caught:
         deck("*INCLUDE\na.k\n", files={"a.k": "$ first\n*INCLUDE\n$ none\nlost.k\n"})
