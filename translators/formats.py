@@ -33,7 +33,7 @@ FORMATS = (
     Format("msh", (".msh",), "zrno.translators.gmsh.read", "zrno.translators.gmsh.write"),
     Format("geo", (".geo",), "zrno.translators.gmsh.geo"),
     Format("lsdyna", (".k", ".key", ".dyn"), "zrno.translators.lsdyna", "zrno.translators.lsdyna"),
-    Format("neu", (".neu",), "zrno.translators.neu"),
+    Format("neu", (".neu", ".fno"), "zrno.translators.neu", "zrno.translators.femap"),
     Format("pak", (".dat",), "zrno.translators.pak", "zrno.translators.pak"),
     Format("vtu", (".vtu",), "zrno.translators.meshio_bridge", "zrno.translators.meshio_bridge"),
 )

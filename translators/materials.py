@@ -26,10 +26,12 @@ def settings_of(settings: Settings, model: Model, part: int) -> tuple[str, dict[
     return model.parts[part].name or str(part), None
 
 
-def materials_of(model: Model, parts: Sequence[int], settings: Settings, report: Report) -> dict[int, Material]:
+def materials_of(
+    model: Model, parts: Sequence[int], settings: Settings, report: Report, *, massless: bool = False
+) -> dict[int, Material]:
     """The material of each part; what the settings give and a law does not take is a remark of the report.
 
-    Raises InputError with all that is missing or wrong in the settings.
+    massless: a density may be missing. Raises InputError with all that is missing or wrong in the settings.
     """
     names = {key for number, part in model.parts.items() for key in (part.name, str(number)) if key}
     for group in ("materials", "contact_laws"):
@@ -47,7 +49,7 @@ def materials_of(model: Model, parts: Sequence[int], settings: Settings, report:
             )
             continue
         material = _merged(own, entry or {}, part, name)
-        _check(settings, name, material, report)
+        _check(settings, name, material, report, massless=massless)
         found[part] = with_defaults(material)
     settings.stop()
     return found
@@ -65,7 +67,7 @@ def _merged(own: Material | None, entry: dict[str, Any], part: int, name: str) -
     return replace(own, density=density, parameters=own.parameters | given, tables=tables)
 
 
-def _check(settings: Settings, name: str, material: Material, report: Report) -> None:
+def _check(settings: Settings, name: str, material: Material, report: Report, *, massless: bool) -> None:
     """What a law needs and has not, at the settings' keys, and what the settings give that it does not take."""
     law = LAWS.get(material.law)
     if law is None:
@@ -73,7 +75,7 @@ def _check(settings: Settings, name: str, material: Material, report: Report) ->
         settings.fault(("materials", name), message, material.law or "none", "law: ...")
         return
     p = material.parameters
-    if material.density <= 0:
+    if material.density <= 0 and not massless:
         settings.fault(("materials", name), f"materials.{name}.density is missing", name, "a value of density")
     for key, default in law.parameters.items():
         if default is None and key not in p and not (key == "yield_stress" and instead_of_yield(material)):

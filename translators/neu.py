@@ -14,7 +14,6 @@ _REAL = re.compile(rb"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?")
 _PATRAN_FIRST = 25  # its first packet is the title
 _EXPECTED = "FEMAP (-1, then 100) or Gambit (CONTROL INFO)"
 _REFUSED = {
-    "femap": ("FEMAP neutral files are not read yet", "a gmsh mesh (.msh) or a Gambit neutral file"),
     "patran": ("this is a Patran neutral file, which is not read", "the mesh as gmsh .msh or as FEMAP neutral file"),
     "netgen": ("this is a Netgen neutral file, which is not read", 'the mesh as gmsh .msh (Netgen: "Gmsh2 Format")'),
     "": ("neither a FEMAP nor a Gambit neutral file", _EXPECTED),
@@ -45,5 +44,9 @@ def read(path: Path | str) -> Model:
         from zrno.translators.gambit import read as read_gambit
 
         return read_gambit(path)
+    if kind == "femap":
+        from zrno.translators.femap import read as read_femap
+
+        return read_femap(path)
     message, expected = _REFUSED[kind]
     raise InputError([Fault(str(path), 1, 1, message, expected=expected)])

@@ -301,6 +301,16 @@ def _free(data, starts, ends, only_commas, values, bits, counts, care):
     return cared
 
 
+@exact_kernel
+def _zeros(data, starts, ends, zero):
+    for i in range(len(starts)):
+        zero[i] = True
+        for a in range(starts[i], ends[i]):
+            if data[a] > _ZERO:  # the other digits, and all letters
+                zero[i] = False
+                break
+
+
 def fixed(
     data: NDArray[np.uint8], starts: NDArray[np.int64], ends: NDArray[np.int64], fields: list[tuple[int, int, int]]
 ) -> tuple[list[NDArray[Any]], NDArray[np.bool_] | None]:
@@ -343,3 +353,10 @@ def free(
     care = np.zeros(n, np.bool_)
     cared = _free(data, starts, ends, only_commas, values, values.view(np.uint64), counts, care)
     return values, counts, care if cared else None
+
+
+def zeros(data: NDArray[np.uint8], starts: NDArray[np.int64], ends: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Which of many lines hold no digit but 0, and no letter: (n,)."""
+    zero = np.empty(len(starts), np.bool_)
+    _zeros(data, starts, ends, zero)
+    return zero

@@ -157,6 +157,17 @@ def test_laws_that_a_deck_has_not() -> None:
         to_fem(mesh, settings())
 
 
+def test_only_what_has_inertia_or_weight_needs_a_density() -> None:
+    mesh = plate()
+    mesh.materials[5].density = 0.0
+    assert to_fem(mesh, settings())[0].materials[5].density == 0.0
+    with pytest.raises(InputError, match="materials.left.density is missing"):
+        to_fem(mesh, settings(fem__analysis="dynamic"))
+    mesh.body_loads = [BodyLoad((0.0, 0.0, -9.8))]
+    with pytest.raises(InputError, match="materials.left.density is missing"):
+        to_fem(mesh, settings())
+
+
 def test_settings_that_do_not_fit() -> None:
     with pytest.raises(InputError, match="the mesh has no such set of nodes"):
         to_fem(plate(), settings(sets__rim__fixed="all"))

@@ -29,7 +29,7 @@ def test_the_package_alone_loads_no_numpy() -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("   -1\n   100\n<NULL>\n4.41\n   -1\n", "FEMAP neutral files are not read yet; expected a gmsh mesh"),
+        ("   -1\n   100\n<NULL>\n4.41\n   -1\n", "a mesh without nodes; expected block 403"),
         ("25       0       0       1       0       0       0       0       0\ntitle\n26 0 0 1 9 4 1 1 0\n",
          "this is a Patran neutral file, which is not read; expected the mesh as gmsh .msh or as FEMAP neutral file"),
         ("8\n  0.0 0.0 0.0\n  1 0 1e3\n", "this is a Netgen neutral file, which is not read; expected the mesh as"),
@@ -49,6 +49,7 @@ def test_neutral_files_of_programs(shared: Path) -> None:
         path.name: folder for folder in ("femap", "gambit") for path in (shared / "samples" / folder).glob("*.neu")
     }
     assert read(shared / "samples/gambit/cubeK5.neu").format == "gambit"
+    assert read(shared / "samples/femap/pak_3de.neu").format == "femap"
 
 
 def test_a_mesh_under_another_name(tmp_path: Path, shared: Path) -> None:
@@ -63,7 +64,7 @@ def test_a_keyword_deck_under_another_name(tmp_path: Path) -> None:
 
 
 def test_targets_that_are_not_written(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match=r"not written; expected one of \.mcm, \.msh, \.k, .*\.dat"):
+    with pytest.raises(ValueError, match=r"not written; expected one of \.mcm, \.msh, \.k, .*\.neu, .*\.dat"):
         write(Model(), tmp_path / "a.stl")
 
 

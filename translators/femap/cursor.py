@@ -1,0 +1,176 @@
+"""Records of a block in turn: lines of numbers, titles, counted values, lists that end with -1."""
+
+from __future__ import annotations
+
+from typing import NoReturn
+
+import numpy as np
+
+from zrno.translators.femap.framing import Block, Lines
+from zrno.translators.model import Ints, Source
+
+_NULL = "<NULL>"
+_FIRST_CHUNK, _LARGEST_CHUNK = 64, 1 << 18
+
+
+class Cursor:
+    """Goes through the lines of a block; blank ones are passed by, except as titles."""
+
+    def __init__(self, lines: Lines, block: Block) -> None:
+        self.lines, self.block = lines, block
+        self.at = block.first
+
+    @property
+    def source(self) -> Source:
+        """The place of the next line."""
+        return Source(self.lines.faults.path, self.next_line() + 1)
+
+    def next_line(self) -> int:
+        """The next line that is not blank; the block's end where there is none."""
+        while self.at < self.block.last and self.lines.blank[self.at]:
+            self.at += 1
+        return self.at
+
+    @property
+    def done(self) -> bool:
+        """Whether no line is left."""
+        return self.next_line() >= self.block.last
+
+    def fail(self, message: str, expected: str = "") -> NoReturn:
+        """Leave the block with a fault at the next line."""
+        text = "" if self.done else self.lines.text(self.at)
+        self.lines.fail(self.at, message, text, expected)
+
+    def words(self, what: str) -> list[bytes]:
+        """The fields of the next line."""
+        if self.done:
+            self.fail(f"block {self.block.number} ends here", what)
+        self.at += 1
+        return [word for _, word in self.lines.fields(self.at - 1)]
+
+    def numbers(self, least: int, what: str) -> list[float]:
+        """The numbers of the next line, at least `least`."""
+        if self.done:
+            self.fail(f"block {self.block.number} ends here", what)
+        count = max(len(self.lines.fields(self.at)), least)
+        self.at += 1
+        found: list[float] = self.lines.table(np.array([self.at - 1]), count, what, least)[0].tolist()
+        return found
+
+    def integers(self, least: int, what: str, smallest: int = -(2**53), most: int = 0) -> list[int]:
+        """The first whole numbers of the next line: at least `least`, filled up with 0 to `most`.
+
+        smallest: what the first of them may be.
+        """
+        most = max(least, most)
+        values = (self.numbers(least, what) + [0.0] * most)[:most]
+        row = np.array([self.at - 1])
+        self.lines.whole(np.array([values[:1]]), row, smallest, what)
+        found: list[int] = self.lines.whole(np.array([values]), row)[0].tolist()
+        return found
+
+    def values(self, count: int, what: str) -> list[float]:
+        """The next `count` numbers, on as many lines as they take."""
+        found: list[float] = []
+        while len(found) < count:
+            found += self.numbers(1, f"{what}: {count} values")
+        return found[:count]
+
+    def count(self, what: str) -> int:
+        """A count, on a line of its own; one that the block cannot hold is a fault."""
+        number = self.integers(1, what, 0)[0]
+        if number > 2048 * (self.block.last - self.at):
+            self.lines.fail(self.at - 1, f"{number} {what} where {self.block.last - self.at} lines follow")
+        return number
+
+    def title(self) -> str:
+        """The next line, blank or not, as it is."""
+        if self.at >= self.block.last:
+            self.fail(f"block {self.block.number} ends here", "a title")
+        self.at += 1
+        text = self.lines.text(self.at - 1)
+        return "" if text == _NULL else text
+
+    def skip(self, count: int, what: str) -> None:
+        """Pass by lines that are not needed."""
+        for _ in range(count):
+            if self.done:
+                self.fail(f"block {self.block.number} ends here", what)
+            self.at += 1
+
+    def at_end(self) -> bool:
+        """Whether the next line ends a list."""
+        return not self.done and self.lines.begins_with_end(self.at)
+
+    def records(self, stride: int, what: str) -> Ints:
+        """The lines at which the records of a list begin, `stride` lines each, until the -1 that ends it."""
+        found: list[Ints] = []
+        size = _FIRST_CHUNK
+        while True:
+            rows = self._rows(size * stride)
+            heads = rows[::stride]
+            if not len(heads):
+                self.fail(f"a list of {what} does not end", "a line that begins with -1")
+            first = self.lines.table(heads, 1, what)[:, 0]
+            ends = [i for i in np.flatnonzero(first == -1).tolist() if self.lines.begins_with_end(int(heads[i]))]
+            if ends:
+                found.append(heads[: ends[0]])
+                self.at = int(heads[ends[0]]) + 1
+                return np.concatenate(found)
+            if len(rows) < len(heads) * stride:
+                self.at = self.block.last
+                self.fail(f"a list of {what} ends inside a record", f"{stride} lines")
+            found.append(heads)
+            self.at = int(rows[-1]) + 1
+            size = min(2 * size, _LARGEST_CHUNK)
+
+    def peek(self, count: int) -> Ints:
+        """The next lines that are not blank, at most `count`, without passing them."""
+        return self._rows(count)
+
+    def below(self, rows: Ints, offset: int) -> Ints:
+        """The lines that stand `offset` lines below others, blank ones not counted."""
+        return self.lines.below(rows, offset)
+
+    def take(self, count: int, what: str) -> Ints:
+        """The next `count` lines that are not blank."""
+        rows = self._rows(count) if count else np.zeros(0, np.int64)
+        if len(rows) < count:
+            self.at = self.block.last
+            self.fail(f"block {self.block.number} ends inside {what}", f"{count} lines")
+        if count:
+            self.at = int(rows[-1]) + 1
+        return rows
+
+    def at_set(self, fields: int) -> bool:
+        """Whether a set begins: a number alone, a title, and a line of at least `fields` fields or a list's end."""
+        if self.done:
+            return False
+        head, third = self.lines.fields(self.at), self.at + 2
+        while third < self.block.last and self.lines.blank[third]:
+            third += 1
+        if len(head) != 1 or not head[0][1].isdigit() or third >= self.block.last:
+            return False
+        return len(self.lines.fields(third)) >= fields or self.lines.begins_with_end(third)
+
+    def pass_to_set(self, fields: int) -> int:
+        """Pass by all lines up to where a set begins; how many of them were no ends of lists."""
+        passed = 0
+        while not self.done and not self.at_set(fields):
+            passed += not self.at_end()
+            self.at += 1
+        return passed
+
+    def _rows(self, count: int) -> Ints:
+        """The next lines that are not blank, at most `count`, without going past them."""
+        self.next_line()
+        blank, first, stop = self.lines.blank, self.at, self.at
+        rows = np.zeros(0, np.int64)
+        while len(rows) < count and stop < self.block.last:  # blank lines are rare: seldom more than one pass
+            stop = min(max(stop + count, stop + (stop - first)), self.block.last)
+            rows = first + np.flatnonzero(~blank[first:stop])
+        return rows[:count]
+
+    def rest(self) -> Ints:
+        """All lines that are left and not blank."""
+        return self.at + np.flatnonzero(~self.lines.blank[self.at : self.block.last])

@@ -1,0 +1,265 @@
+"""The text of a FEMAP neutral file: its lines, the blocks that they frame, their numbers and their faults.
+
+A block is a line `-1`, its number, records, a line `-1`. Fields are separated by commas, blanks or both, a last comma
+ends the last field. A line `-1` also ends lists inside some blocks: what ends a block is followed by the next block's
+`-1` and number, or by nothing. Lines that start with $COM are comments.
+Source: FEMAP neutral file format, versions 4.41 and later (file structure).
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NoReturn
+
+import numpy as np
+
+from zrno.translators.model import Floats, Ints
+from zrno.translators.text import MAX_FAULTS, Faults, line_spans, parse_real
+
+_LONGEST_LINE = 4096  # bytes; the format's own limit is 255
+_FEW, _VERY_FEW = 50_000, 100  # numbers: fewer are parsed in Python before the jitted kernels are loaded, and after
+_LARGE = 4 << 20  # bytes of a file for which they are loaded at once
+_EXACT = 2.0**53  # doubles hold every whole number up to here
+_LONE = re.compile(rb"\s*(\d{3,5})[\s,]*")
+_FIELD = re.compile(rb"[ \t\r\f\v]*([^ \t\r\f\v,]*)[ \t\r\f\v]*(,?)")
+_KNOWN = {100, *range(401, 500), 506, 507, 533, 601, 615, 822, 918, 919, 1007, 1051}
+_BLANKS = np.zeros(256, bool)
+_BLANKS[list(b" \t\r\f\v")] = True
+_BOM = b"\xef\xbb\xbf"
+
+
+class Broken(Exception):
+    """A block cannot be read further; what is wrong is noted in the faults."""
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """number: which kind of data; head: the line of the number; first..last (excluded): its lines, from 0."""
+
+    number: int
+    head: int
+    first: int
+    last: int
+
+    def whole(self, lines: Lines) -> bool:
+        """Whether a line -1 ends it, and not the end of the file."""
+        return self.last < len(lines)
+
+
+class Lines:
+    """The lines of a file, from 0, without the blanks around them; comments are blank lines."""
+
+    def __init__(self, path: Path | str, data: bytes) -> None:
+        self.faults = Faults(str(path))
+        self._encoding = "utf-8" if data.startswith(_BOM) else "latin-1"
+        data = data.removeprefix(_BOM)
+        self._data = data
+        self._bytes = np.frombuffer(data, np.uint8)
+        self._begins, self._ends = line_spans(data)
+        longest = int((self._ends - self._begins).max(initial=0))
+        if longest > _LONGEST_LINE:
+            row = int(np.argmax(self._ends - self._begins))
+            self.faults.add(row + 1, 1, f"a line of {longest} characters", expected="at most 255 characters")
+            self.faults.stop()
+        self._starts = self._begins.copy()
+        self._trim()
+        self.blank = self._starts >= self._ends
+        dollars = np.flatnonzero(self._bytes[np.minimum(self._starts, len(data) - 1)] == ord("$"))
+        for row in dollars.tolist():
+            if self._text(row)[:4].upper() == b"$COM":
+                self.blank[row] = True
+        self._few = _FEW if len(data) < _LARGE else _VERY_FEW
+        self._any_blank = bool(self.blank.any())
+        self._filled = np.flatnonzero(~self.blank) if self._any_blank else np.zeros(0, np.int64)
+
+    def __len__(self) -> int:
+        return len(self._starts)
+
+    def _trim(self) -> None:
+        """Take the blanks around the lines off their spans."""
+        last = len(self._data) - 1
+        rows = np.flatnonzero((self._ends > self._starts) & _BLANKS[self._bytes[np.maximum(self._ends - 1, 0)]])
+        while len(rows):
+            self._ends[rows] -= 1
+            some = rows[self._ends[rows] > self._starts[rows]]
+            rows = some[_BLANKS[self._bytes[self._ends[some] - 1]]]
+        rows = np.flatnonzero((self._ends > self._starts) & _BLANKS[self._bytes[np.minimum(self._starts, last)]])
+        while len(rows):
+            self._starts[rows] += 1
+            rows = rows[_BLANKS[self._bytes[self._starts[rows]]]]
+
+    def _text(self, row: int) -> bytes:
+        return self._data[self._starts[row] : self._ends[row]]
+
+    def text(self, row: int) -> str:
+        """A line without the blanks around it."""
+        return self._text(row).decode(self._encoding, "replace")
+
+    def fields(self, row: int) -> list[tuple[int, bytes]]:
+        """The fields of a line, and the column of each, from 1."""
+        line, found, at = self._text(row), [], 0
+        shift = int(self._starts[row] - self._begins[row]) + 1
+        while at < len(line):
+            match = _FIELD.match(line, at)
+            assert match is not None  # it matches anything
+            found.append((match.start(1) + shift, match[1]))
+            at = match.end()
+        return found
+
+    def fault(self, row: int, column: int, message: str, text: bytes | str = "", expected: str = "") -> None:
+        """Note a fault at a line (from 0; past the last: where the file ends) and a column (from 1)."""
+        said = text.decode("latin-1") if isinstance(text, bytes) else text
+        said = "".join(letter if letter.isprintable() else "?" for letter in said[:80])
+        self.faults.add(row + 1, column, message, said, expected)
+
+    def fail(self, row: int, message: str, text: bytes | str = "", expected: str = "", column: int = 0) -> NoReturn:
+        """Note a fault and leave the block. column 0: where the line's text begins."""
+        if not column:
+            column = 1 + (int(self._starts[row] - self._begins[row]) if row < len(self) else 0)
+        self.fault(row, column, message, text, expected)
+        raise Broken
+
+    def table(self, rows: Ints, width: int, what: str, least: int = 1) -> Floats:
+        """The first `width` numbers of lines, shape (n, width), 0 where a line has fewer, but not fewer than `least`.
+
+        what: of the lines, for messages. Leaves the block after noting what is no number.
+        """
+        if len(rows) * width < self._few:
+            values, counts = np.zeros((len(rows), width)), np.zeros(len(rows), np.int64)
+            care = np.ones(len(rows), bool)
+        else:
+            from zrno.translators import scan
+
+            some = self._span(rows)
+            values, counts, odd = scan.free(self._bytes, self._starts[some], self._ends[some], width)
+            care = np.zeros(len(rows), bool) if odd is None else odd
+        bad = False
+        for i in np.flatnonzero(care).tolist():
+            bad |= self._parse(int(rows[i]), values[i], counts, i)
+        for i in np.flatnonzero(counts < least)[:MAX_FAULTS].tolist():
+            self.fault(
+                int(rows[i]),
+                1,
+                f"{counts[i]} numbers in a line of {what}",
+                self._text(int(rows[i])),
+                f"at least {least}",
+            )
+            bad = True
+        if bad:
+            raise Broken
+        return values
+
+    def flagged(self, rows: Ints) -> Ints:
+        """Which of lines (places among `rows`) hold more than zeros."""
+        if len(rows) < self._few:
+            return np.arange(len(rows))
+        from zrno.translators import scan
+
+        some = self._span(rows)
+        return np.flatnonzero(~scan.zeros(self._bytes, self._starts[some], self._ends[some]))
+
+    @staticmethod
+    def _span(rows: Ints) -> slice | Ints:
+        """An index of lines: a slice where there is one, which copies nothing."""
+        step = int(rows[1] - rows[0]) if len(rows) > 1 else 1
+        return slice(int(rows[0]), int(rows[-1]) + 1, step) if (np.diff(rows) == step).all() else rows
+
+    def _parse(self, row: int, values: Floats, counts: Ints, i: int) -> bool:
+        """One line of a table in Python; whether it is bad."""
+        fields = self.fields(row)
+        counts[i] = len(fields)
+        values[:] = 0.0
+        for k, (column, word) in enumerate(fields[: len(values)]):
+            number = parse_real(word.decode("latin-1"))
+            if number is None or not np.isfinite(number):
+                self.fault(row, column, "not a number", word, "a number")
+                return True
+            values[k] = number
+        return False
+
+    def whole(self, values: Floats, rows: Ints, least: int = -(2**53), what: str = "a whole number") -> Ints:
+        """Columns of a table as integers, shape (n, k), whose first column is the lines' `values[:, 0]`.
+
+        Notes and leaves where one is not whole, or below `least`.
+        """
+        good = (np.abs(values) < _EXACT) & (np.rint(values) == values) & (values >= least)
+        if not good.all():
+            for i in np.flatnonzero(~good.all(axis=1))[:MAX_FAULTS].tolist():
+                k = int(np.argmin(good[i]))
+                fields = self.fields(int(rows[i]))
+                column, word = fields[k] if k < len(fields) else (1, b"")
+                self.fault(int(rows[i]), column, f"not {what}", word, what)
+            raise Broken
+        found: Ints = values.astype(np.int64)
+        return found
+
+    def begins_with_end(self, row: int) -> bool:
+        """Whether the first field of a line is -1 as a list's end is: not a real number."""
+        fields = self.fields(row)
+        return bool(fields) and fields[0][1] == b"-1"
+
+    def below(self, rows: Ints, offset: int) -> Ints:
+        """The lines that stand `offset` lines below others, blank ones not counted."""
+        if not self._any_blank:
+            return rows + offset
+        found: Ints = self._filled[np.searchsorted(self._filled, rows) + offset]
+        return found
+
+    def marks(self) -> Ints:
+        """The lines that are -1 and nothing else."""
+        two = np.flatnonzero(self._ends - self._starts == 2)
+        first = self._starts[two]
+        found: Ints = two[(self._bytes[first] == ord("-")) & (self._bytes[first + 1] == ord("1"))]
+        return found
+
+
+def blocks(lines: Lines) -> list[Block]:
+    """The blocks of a file in its order; notes blocks that do not end."""
+    filled = np.flatnonzero(~lines.blank)
+    marks = np.flatnonzero(np.isin(filled, lines.marks(), assume_unique=True))
+    is_mark = np.zeros(len(filled) + 2, bool)
+    is_mark[marks] = True
+    found: list[Block] = []
+    head, number, start = 0, 0, 0  # of the block that is open
+
+    def number_at(place: int) -> int:
+        match = _LONE.fullmatch(lines._text(int(filled[place]))) if place < len(filled) else None
+        return int(match[1]) if match else 0
+
+    def close(last: int) -> None:
+        if number:
+            found.append(Block(number, int(head), int(start), last))
+
+    if not len(marks) or marks[0] != 0:
+        lines.fault(0, 1, "not the start of a block", expected="a line -1")
+        lines.faults.stop()
+    skip = -1
+    for at in marks.tolist():
+        if at <= skip:
+            continue
+        if not found and not number and at == 0:
+            follows = 0
+        elif at + 1 == len(filled):
+            close(int(filled[at]))
+            number = 0
+            continue
+        elif is_mark[at + 1] and number_at(at + 2):
+            close(int(filled[at]))
+            follows = at + 1
+        elif number_at(at + 1) in _KNOWN and not is_mark[at - 1]:
+            close(int(filled[at]))
+            lines.fault(int(filled[at]), 1, f"block {number} does not end", expected="a line -1 before this one")
+            follows = at
+        else:
+            continue
+        number = number_at(follows + 1)
+        head = int(filled[follows + 1]) if follows + 1 < len(filled) else len(lines)
+        if not number:
+            lines.fault(head, 1, "not the number of a block", expected="100, 401, 403, ...")
+            lines.faults.stop()
+        start, skip = head + 1, follows
+    if number:
+        close(len(lines))
+    return found
