@@ -8,7 +8,7 @@ from zrno.translators.lsdyna.cards import Card, heading
 from zrno.translators.lsdyna.deck import Deck
 from zrno.translators.lsdyna.keywords import Registry, take
 from zrno.translators.lsdyna.lexer import Block
-from zrno.translators.lsdyna.unread import resolved_line
+from zrno.translators.lsdyna.unread import keep, resolved_line
 from zrno.translators.model import Contact
 
 CONTROL = Registry()
@@ -59,7 +59,8 @@ def _implicit(deck: Deck, block: Block, options: list[str]) -> bool:
             if analysis.kind in ("", "explicit"):
                 analysis.kind = "static"
             analysis.initial_step = first["dt0"] or analysis.initial_step
-    return False  # the whole keyword is kept as text as well
+    keep(deck, block, quiet=True)  # as text: the model has words for the kind of analysis alone
+    return True
 
 
 @CONTROL("CONTACT")
