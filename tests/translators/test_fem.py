@@ -161,10 +161,10 @@ def test_only_what_has_inertia_or_weight_needs_a_density() -> None:
     mesh = plate()
     mesh.materials[5].density = 0.0
     assert to_fem(mesh, settings())[0].materials[5].density == 0.0
-    with pytest.raises(InputError, match="materials.left.density is missing"):
+    with pytest.raises(InputError, match=r"materials\.left\.density is missing"):
         to_fem(mesh, settings(fem__analysis="dynamic"))
     mesh.body_loads = [BodyLoad((0.0, 0.0, -9.8))]
-    with pytest.raises(InputError, match="materials.left.density is missing"):
+    with pytest.raises(InputError, match=r"materials\.left\.density is missing"):
         to_fem(mesh, settings())
 
 
