@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import csv
+import importlib.util
 import re
+import sys
 from collections import Counter
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
 
 from zrno.pipelines.convert import convert
 from zrno.pipelines.info import info
-from zrno.translators import InputError, load_settings
+from zrno.translators import InputError, load_settings, read
 from zrno.translators.elements import TABLE
 
 # File -> what converting it to a deck gives: "" for a deck, else what is said. Volumes and areas go to .dat, particles
@@ -99,6 +102,17 @@ def samples(shared: Path) -> Path:
     return shared / "samples"
 
 
+def load_module(name: str) -> ModuleType:
+    """A module beside this one, by its file."""
+    spec = importlib.util.spec_from_file_location(Path(name).stem, Path(__file__).parent / name)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
 def listed(samples: Path) -> dict[str, str]:
     """The counts that the list gives of each file."""
     with (samples / "MANIFEST.tsv").open(encoding="utf-8") as file:
@@ -132,6 +146,13 @@ def test_outcome(samples: Path, tmp_path: Path, name: str) -> None:
         assert not target.exists()
         return
     convert([path], target, settings=settings)
+    # a reader that shares nothing with ours takes it
+    strict = load_module("strict_mcm.py" if particles else "pak/strict.py")
+    deck = strict.read(target)
+    if not particles:
+        for k, (kind, *_) in enumerate(deck.groups):
+            if kind == 3:
+                assert (strict.jacobians(deck, k) > 0).all()
     # what we wrote is read, and written again to the same bytes
     again = target.with_stem("again")
     convert([target], again)
@@ -179,3 +200,21 @@ def test_counts_of_info(samples: Path, name: str) -> None:
         found[f"elements {TABLE[kind].dimension}"] += count
     expected = expected_counts(listed(samples)[name])
     assert +found == expected
+
+
+def test_the_cone_of_the_dissertation(samples: Path, tmp_path: Path) -> None:
+    """From the author's mesh to his deck's coordinates and boundary codes, by our converter and a strict reader."""
+    convert([samples / "lsdyna/topalovic_kupa1.k"], tmp_path / "cone.mcm", parts=["1"])
+    deck = load_module("strict_mcm.py").read(tmp_path / "cone.mcm")
+    his = read(samples / "mcm/kipkupa.mcm", paired=True).particles
+    assert his is not None
+    assert deck.x == [tuple(row) for row in his.x.tolist()]
+    assert deck.bc == his.bc.tolist()
+    both = tmp_path / "both.mcm"
+    convert([samples / "lsdyna/topalovic_kupa1.k"], both)
+    assert load_module("strict_mcm.py").read(both).bc == [0] * 478 + [7] * 324
+
+
+def test_the_plate_of_the_dissertation_keeps_its_meaning(samples: Path, tmp_path: Path, same) -> None:
+    convert([samples / "pak-dat/kipkupa.dat"], tmp_path / "plate.dat")
+    assert same(read(tmp_path / "plate.dat"), read(samples / "pak-dat/kipkupa.dat"))
