@@ -88,8 +88,20 @@ def losses(result: Mapping[str, Any], *kinds: str) -> list[str]:
 
 
 def report_text(result: Mapping[str, Any]) -> str:
-    """Remarks, and what was approximated and dropped, a line each."""
-    return "\n".join([*result["notes"], *losses(result, "approximated", "dropped")])
+    """Remarks, and a table of what was translated, approximated and dropped."""
+    rows = [("translated", count, what, "") for what, count in _contents(result["target"])]
+    rows += [(kind, i["count"], i["what"], i["where"]) for kind in ("approximated", "dropped") for i in result[kind]]
+    width = max((len(str(count)) for _, count, _, _ in rows), default=0)
+    wide = min(max((len(what) for _, _, what, _ in rows), default=0), 40)
+    table = [f"{kind:12} {count:>{width}}  {what:{wide}}  {where}".rstrip() for kind, count, what, where in rows]
+    return "\n".join([*result["notes"], *table])
+
+
+def _contents(summary: Mapping[str, Any]) -> list[tuple[str, int]]:
+    """What is in a model, counted; what there is none of is left out."""
+    counts = [("nodes", summary["nodes"]), *summary["elements"].items(), ("particles", summary["particles"])]
+    counts += [(name, len(summary[name])) for name in ("parts", "materials", "sets")]
+    return [(name, count) for name, count in counts if count]
 
 
 def _read(path: Path, numbers: Mapping[str, float] | None, *, allow_outside: bool) -> Model:

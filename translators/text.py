@@ -9,16 +9,20 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from zrno.translators.faults import MAX_FAULTS as MAX_FAULTS
+from zrno.translators.faults import Fault as Fault
+from zrno.translators.faults import Faults as Faults
+from zrno.translators.faults import InputError as InputError
+
 Ints = NDArray[np.int64]
 
-MAX_FAULTS = 20
 _CHUNK = 20_000  # cards looked at together: the cut-out columns stay in the cache
 _FEW = 100_000  # numbers: below this Python parses them before the jitted kernels are loaded
 _LINES_AT_A_TIME = 1 << 23  # bytes searched for line ends
@@ -36,54 +40,6 @@ def _table(characters: bytes) -> NDArray[np.bool_]:
 
 
 _DIGITS_OR_BLANK = _table(b"0123456789 ")
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Fault:
-    """One thing wrong in a file. line, column: from 1; text: the offending text; expected: what should stand there."""
-
-    path: str
-    line: int
-    column: int
-    message: str
-    text: str = ""
-    expected: str = ""
-
-    def __str__(self) -> str:
-        said = f"{self.path}:{self.line}:{self.column}: error: {self.message}"
-        said += f" ({self.text})" if self.text else ""
-        return said + (f"; expected {self.expected}" if self.expected else "")
-
-
-class InputError(Exception):
-    """A file that cannot be used. Its text is one line a fault."""
-
-    def __init__(self, faults: Sequence[Fault]) -> None:
-        self.faults = list(faults)
-        super().__init__("\n".join(str(fault) for fault in self.faults))
-
-
-@dataclass(slots=True)
-class Faults:
-    """Collects the faults of one file, so that a reader can go on after the first."""
-
-    path: str
-    found: list[Fault] = field(default_factory=list)
-
-    def add(self, line: int, column: int, message: str, text: str = "", expected: str = "") -> None:
-        """Note a fault; raises InputError at the twentieth."""
-        self.found.append(Fault(self.path, line, column, message, text, expected))
-        if len(self.found) >= MAX_FAULTS:
-            self.stop()
-
-    def add_at(self, place: tuple[int, int], message: str, text: str = "", expected: str = "") -> None:
-        """Note a fault at (line, column)."""
-        self.add(*place, message, text, expected)
-
-    def stop(self) -> None:
-        """Raise InputError when there are faults."""
-        if self.found:
-            raise InputError(sorted(set(self.found)))
 
 
 def read_bytes(path: Path | str) -> bytes:
@@ -181,6 +137,12 @@ class Layout:
                 column += width
         self.width = column
 
+    def only(self, name: str) -> Layout:
+        """A layout of one of the fields."""
+        f = self.fields[name]
+        kind = f"{f.kind}{f.end - f.start}" + (f".{f.implied}" if f.implied else "")
+        return Layout(f"a{f.start},{kind}", f"gap {name}") if f.start else Layout(kind, name)
+
 
 class Block:
     """Cards of one layout. values: an array a numeric field, shape (n,), by name (int64 or float64).
@@ -249,6 +211,10 @@ class Block:
             return
         self._faulty.add((i, name))
         self._cards.faults.add(*self.place(name, i), message, self.text(name, i) or "blank", expected)
+
+    def stop(self) -> None:
+        """Raise InputError when there are faults in the file so far."""
+        self._cards.faults.stop()
 
     def sound(self, name: str, i: int = 0) -> bool:
         """Whether a field of card i has no fault so far."""
@@ -330,10 +296,11 @@ class Cards:
         marked = _table(comments)[first] & (starts < ends)
         if second:
             marked &= _table(second)[self._bytes[np.minimum(starts + 1, len(data) - 1)]] | (ends - starts == 1)
-        keep = np.flatnonzero(~marked)
-        self._starts = starts[keep]
-        self._ends = ends[keep]
-        self._numbers = keep + 1
+        self._numbers: Ints | None = None  # lines of the cards, from 1, where there are comments
+        if marked.any():
+            keep = np.flatnonzero(~marked)
+            starts, ends, self._numbers = starts[keep], ends[keep], keep + 1
+        self._starts, self._ends = starts, ends
         self._next = 0
 
     @property
@@ -343,7 +310,9 @@ class Cards:
 
     def line(self, card: int) -> int:
         """Line of a card (from 0) in its file, from 1."""
-        return int(self._numbers[card]) if card < len(self._numbers) else self._lines + 1
+        if card >= len(self._starts):
+            return self._lines + 1
+        return card + 1 if self._numbers is None else int(self._numbers[card])
 
     @property
     def next_line(self) -> int:

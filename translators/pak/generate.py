@@ -52,7 +52,7 @@ def read_series(
     Raises InputError where the file ends, or a run cannot be.
     """
     gaps = np.empty(0, np.int64)
-    korc = cards.probe(Layout(*_only(layouts[0], "KORC")), count, len(layouts))["KORC"]
+    korc = cards.probe(layouts[0].only("KORC"), count, len(layouts))["KORC"]
     if korc.any():
         gaps = _gaps(cards, layouts, key, korc)
     if not len(gaps):
@@ -89,17 +89,10 @@ def read_series(
 def _gaps(cards: Cards, layouts: Sequence[Layout], key: tuple[int, str], korc: Ints) -> Ints:
     """How many items stand between each of the next cards and the one after it; as far as can be told."""
     name = key[1]
-    number = cards.probe(Layout(*_only(layouts[key[0]], name)), len(korc), len(layouts), key[0])[name]
+    number = cards.probe(layouts[key[0]].only(name), len(korc), len(layouts), key[0])[name]
     short = min(len(korc), len(number))
     korc, number = korc[:short], number[:short]
     run = korc != 0
     span = np.append(np.diff(number), 0)
     gaps = np.where(run, span // np.where(run, korc, 1) - 1, 0)
     return np.clip(gaps, -1, 10**12 // max(short, 1))
-
-
-def _only(layout: Layout, name: str) -> tuple[str, str]:
-    """Format and name of one field of a layout."""
-    f = layout.fields[name]
-    gap = f"a{f.start}," if f.start else ""
-    return f"{gap}{f.kind}{f.end - f.start}", f"{'gap ' if gap else ''}{name}"

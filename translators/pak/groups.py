@@ -140,7 +140,7 @@ class Groups:
             cards, key = [layouts.solid(wide), layouts.nodes(wide, 1, kind.corners), more], (1, "n1")
         else:
             cards, key = [layouts.flat(wide), layouts.nodes(wide, 1, kind.most)], (1, "n1")
-        generated = kind.family != "beam" and self.cards.probe(_korc(cards[0]), left, len(cards))["KORC"].any()
+        generated = kind.family != "beam" and self.cards.probe(cards[0].only("KORC"), left, len(cards))["KORC"].any()
         before: dict[str, Any] = {}
         done = 0
         while left:
@@ -293,11 +293,6 @@ class Groups:
             nodes[wrong] = nodes[wrong][:, list(MIRRORED[kind])]
             self.warn(line, f"{len(wrong)} {kind} of group {group} are inside out, where PAK stops: turned")
         return nodes
-
-
-def _korc(layout: Layout) -> Layout:
-    f = layout.fields["KORC"]
-    return Layout(f"a{f.start},i{f.end - f.start}", "gap KORC")
 
 
 def _joined(nodes: list[Ints]) -> Ints:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,8 @@ from zrno.translators.text import Block, Cards
 
 _MOST_TERMS = 6  # independent degrees of freedom of a relation
 _SLAVE = -1
+_LARGEST = 10**10  # number of a node
+_CHUNK = 250_000  # node cards read at a time
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,36 +57,37 @@ class Numbering:
 def read_nodes(cards: Cards, model: Model, control: FemControl, count: int, size: int) -> Numbering:
     """Card 10: node numbers, coordinates and held degrees of freedom, and the relations of dependent ones."""
     layout = layouts.node(control.wide)
-    series = read_series(cards, [layout], count, "node card", key=(0, "N"), size=size)
-    block = series.blocks[0]
-    numbers = block["N"]
-    top = count if not control.free_numbering else 10**10
-    block.check("N", (numbers > 0) & (numbers <= top), "node number out of range",
-                f"1 to {count}" if top == count else "a positive number")  # fmt: skip
-    codes = np.column_stack([block[name].astype(np.int8) for name in layouts.DOFS])
-    for k, name in enumerate(layouts.DOFS):
-        block.check(name, (codes[:, k] >= -1) & (codes[:, k] <= 1), "no such code", "0 free, 1 held or -1 dependent")
-    cards.faults.stop()
-    xyz = np.column_stack([block[axis] for axis in "xyz"])
-    lj = block["LJ"]
-    polar = _polar(cards, block, control)
-    if series.generated:
-        numbers = series.numbers(numbers)
+    path = cards.faults.path
+    if cards.probe(layout.only("KORC"), count)["KORC"].any():
+        series = read_series(cards, [layout], count, "node card", key=(0, "N"), size=size)
+        numbers, xyz, codes, lj, polar = _card_values(series.blocks[0], control, count)
         xyz, polar = _between(series, xyz, polar)
-        codes, lj = np.asarray(series.take(codes)), np.asarray(series.take(lj))
-        model.warnings.append(f"{cards.faults.path}: {count - len(block['N'])} nodes are generated (KORC)")
+        numbers, codes, lj = series.numbers(numbers), codes[series.card], lj[series.card]
+        owner, used = series.card, len(series.blocks[0]["N"])
+        model.warnings.append(f"{path}: {count - used} nodes are generated (KORC)")
+    else:
+        pieces = []
+        for start in range(0, count, _CHUNK):
+            block = cards.block(layout, min(_CHUNK, count - start), "node card")
+            pieces.append(_card_values(block, control, count))
+        numbers, xyz, codes, lj, polar = (np.concatenate(some) for some in zip(*pieces, strict=True))
+        owner, used = np.arange(count), count
+        del pieces
+
+    def line(node: int) -> int:
+        return cards.line_of(int(owner[node]) - used)
+
     if polar.any():
-        place = block.line(int(series.card[np.argmax(polar)]))
         angle = np.radians(xyz[polar, 1])
         xyz[polar, :2] = xyz[polar, :1] * np.column_stack([np.cos(angle), np.sin(angle)])
         model.warnings.append(
-            f"{cards.faults.path}:{place}: {int(polar.sum())} nodes in polar coordinates, turned into Cartesian ones"
+            f"{path}:{line(int(np.argmax(polar)))}: {int(polar.sum())} nodes in polar coordinates, turned into "
+            "Cartesian ones"
         )
     numbering = Numbering.of(numbers)
     twice = np.flatnonzero(np.diff(numbering.sorted) == 0)
-    for i in twice[:5].tolist():
-        again = int(series.card[numbering.order[i + 1]])
-        block.fault(again, "N", "this node stands twice", "another number")
+    for node in numbering.order[twice[:5] + 1].tolist():
+        cards.faults.add(line(node), 1, "this node stands twice", str(numbers[node]), "another number")
     cards.faults.stop()
     if not control.free_numbering and not (numbers[1:] > numbers[:-1]).all():
         order = numbering.order
@@ -100,12 +104,22 @@ def read_nodes(cards: Cards, model: Model, control: FemControl, count: int, size
     return numbering
 
 
-def _polar(cards: Cards, block: Block, control: FemControl) -> NDArray[np.bool_]:
-    """Which cards are marked as polar: r, angle in degrees, z."""
-    name = "CH" if control.free_numbering or control.wide else "CH_0"
-    f = block.layout.fields[name]
-    mark = block.letters(f.start)
-    return np.asarray((mark == ord("p")) | (mark == ord("P")))
+def _card_values(block: Block, control: FemControl, count: int) -> tuple[Ints, Floats, Any, Ints, NDArray[np.bool_]]:
+    """Numbers, coordinates, codes (n, 6), LJ and marks of polar coordinates of node cards, checked."""
+    numbers = block["N"]
+    top = count if not control.free_numbering else _LARGEST
+    block.check("N", (numbers > 0) & (numbers <= top), "node number out of range",
+                f"1 to {count}" if top == count else "a positive number")  # fmt: skip
+    codes = np.empty((len(numbers), 6), np.int8)
+    for k, name in enumerate(layouts.DOFS):
+        own = block[name]
+        block.check(name, (own >= -1) & (own <= 1), "no such code", "0 free, 1 held or -1 dependent")
+        codes[:, k] = own
+    block.stop()
+    mark = "CH" if control.free_numbering or control.wide else "CH_0"
+    letters = block.letters(block.layout.fields[mark].start)
+    polar = (letters == ord("p")) | (letters == ord("P"))  # r, angle in degrees, z
+    return numbers, np.column_stack([block[axis] for axis in "xyz"]), codes, block["LJ"], polar
 
 
 def _between(series: Series, xyz: Floats, polar: NDArray[np.bool_]) -> tuple[Floats, NDArray[np.bool_]]:

@@ -110,7 +110,8 @@ def read(path: Path, *, points: bool = True) -> Deck:
         for _ in range(sets):
             r.card("i5", *["f10.0"] * 6)
         for _ in range(slaves):
-            which, *pairs = r.card("i5", *[n, "i5"] * (terms + 1))
+            which, *pairs = r.card("i5", *[n, "i5"] * 7)
+            pairs = pairs[: 2 * terms + 2]
             assert 1 <= which <= sets
             assert all(node in deck.xyz for node in pairs[::2])
             assert deck.codes[int(pairs[0])][int(pairs[1]) - 1] == -1
