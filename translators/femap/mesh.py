@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from zrno.translators.elements import TABLE
 from zrno.translators.femap.cursor import Cursor
-from zrno.translators.femap.framing import Lines
+from zrno.translators.femap.framing import Broken, Lines
 from zrno.translators.femap.ids import Places
 from zrno.translators.femap.topology import GAP, LISTS, PACKED, PYRAMIDS, RIGID_2, TOPOLOGIES, TYPES, UNKNOWN
 from zrno.translators.model import ElementBlock, Floats, Ints, Model
@@ -82,8 +83,9 @@ class Elements:
         at, size, searched = 0, _FIRST_CHUNK, 0
         while at < len(rows):
             some = rows[at : at + size * _STRIDE]
+            some = some[: len(some) - len(some) % _STRIDE]  # a list may stand where the rest is
             begin = some[::_STRIDE]
-            if len(some) < len(begin) * _STRIDE:
+            if not len(begin):
                 cursor.at = cursor.block.last
                 cursor.fail("the block ends inside an element", f"{_STRIDE} lines")
             head = lines.whole(lines.table(begin, _HEAD, "an element's first line", 5), begin)
@@ -133,7 +135,8 @@ class Elements:
             lines.faults.stop()
         builder = _Builder(self, model, lines, places)
         for topology in dict.fromkeys(self.head[:, 4].tolist()):
-            builder.add(topology)
+            with suppress(Broken):  # what is wrong is noted
+                builder.add(topology)
         lines.faults.stop()
         builder.finish()
         return ids

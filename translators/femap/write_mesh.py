@@ -161,7 +161,7 @@ class Mesh:
             values = self._values(section, kind, native)
             laminate = [int(m) for m in native.get("laminate", [])]
             name = (found.name if found else "") or (section.name if section else "")
-            yield line((number, native.get("color", 110), (found.material if found else None) or 0, kind,
+            yield line((number, 110, (found.material if found else None) or 0, kind,
                         native.get("layer", 1), native.get("system", 0)))  # fmt: skip
             yield title(name, self.report) + line(native.get("flags", [0, 0, 0, 0]))
             yield line([len(laminate)]) + "".join(rows(laminate, 8))
