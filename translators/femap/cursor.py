@@ -77,6 +77,13 @@ class Cursor:
             found += self.numbers(1, f"{what}: {count} values")
         return found[:count]
 
+    def wholes(self, count: int, what: str) -> list[int]:
+        """The next `count` whole numbers, on as many lines as they take."""
+        found = self.values(count, what)
+        if not all(value.is_integer() and abs(value) < 2**53 for value in found):
+            self.lines.fail(self.at - 1, f"{what} that are not whole numbers", self.lines.text(self.at - 1))
+        return [int(value) for value in found]
+
     def count(self, what: str) -> int:
         """A count, on a line of its own; one that the block cannot hold is a fault."""
         number = self.integers(1, f"a count of {what}", 0)[0]

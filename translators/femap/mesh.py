@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from zrno.translators.elements import TABLE
 from zrno.translators.femap.cursor import Cursor
 from zrno.translators.femap.framing import Broken, Lines
-from zrno.translators.femap.ids import Places
+from zrno.translators.femap.ids import Places, by_value
 from zrno.translators.femap.topology import GAP, LISTS, PACKED, PYRAMIDS, RIGID_2, TOPOLOGIES, TYPES, UNKNOWN
 from zrno.translators.model import ElementBlock, Floats, Ints, Model
 from zrno.translators.text import MAX_FAULTS
@@ -134,9 +134,9 @@ class Elements:
             lines.fault(int(self.rows[twice]), 1, "an element's number stands twice", number)
             lines.faults.stop()
         builder = _Builder(self, model, lines, places)
-        for topology in dict.fromkeys(self.head[:, 4].tolist()):
+        for topology, which in by_value(self.head[:, 4]):
             with suppress(Broken):  # what is wrong is noted
-                builder.add(topology)
+                builder.add(topology, which)
         lines.faults.stop()
         builder.finish()
         return ids
@@ -151,9 +151,8 @@ class _Builder:
         self.said: Counter[str] = Counter()
         self.first: dict[str, int] = {}
 
-    def add(self, topology: int) -> None:
-        """All elements of a topology."""
-        which = np.flatnonzero(self.elements.head[:, 4] == topology)
+    def add(self, topology: int, which: Ints) -> None:
+        """All elements of a topology; which: their places."""
         rigid = self.elements.head[which, 3] == _RIGID_TYPE
         self._say("rigid elements are not read", which[rigid])
         which = which[~rigid]
@@ -196,7 +195,7 @@ class _Builder:
 
     def _block(self, which: Ints, nodes: Ints, kind: str, order: tuple[int, ...]) -> None:
         """Elements of one kind, family by family."""
-        nodes = nodes[:, list(order)]
+        nodes = nodes[:, : len(order)] if order == tuple(range(len(order))) else nodes[:, list(order)]
         corners = TABLE[kind].shape.corners
         missing = (nodes[:, corners:] == 0).any(axis=1)
         if missing.any():
@@ -212,17 +211,19 @@ class _Builder:
                 message = f"element {int(self.elements.head[which[i], 0])} has a node that is not there"
                 self.lines.fault(row, 1, message, str(number), "a node of block 403")
             return
-        types = self.elements.head[which, 3]
-        families: dict[str, list[int]] = {}
-        for number in dict.fromkeys(types.tolist()):
+        families: dict[str, list[Ints]] = {}
+        for number, some in by_value(self.elements.head[which, 3]):
             known = TYPES.get(number, UNKNOWN)
-            families.setdefault(known.family, []).append(number)
+            families.setdefault(known.family, []).append(some)
             if not known.sure:
                 said = f"elements of type {number} ({known.name}) are read as {known.family or 'elements of no family'}"
-                self._say(said, which[types == number])
-        for family, numbers in families.items():
-            mine = np.isin(types, numbers)
-            self._append(which[mine], at[mine], kind, family)
+                self._say(said, which[some])
+        for family, places in families.items():
+            if len(places) == len(families) == 1:
+                self._append(which, at, kind, family)
+            else:
+                mine = np.sort(np.concatenate(places))
+                self._append(which[mine], at[mine], kind, family)
 
     def _append(self, which: Ints, nodes: Ints, kind: str, family: str) -> None:
         head = self.elements.head[which]

@@ -40,7 +40,7 @@ def read(cursor: Cursor, model: Model, version: tuple[int, int]) -> None:
         number, _, material, kind, layer, system = cursor.integers(5, "a property's number", 1, 6)
         title = cursor.title()
         flags = cursor.integers(1, "a property's flags", most=4)
-        laminate = [int(value) for value in cursor.values(cursor.count("layers"), "layers")]
+        laminate = cursor.wholes(cursor.count("layers"), "layers")
         values = cursor.values(cursor.count("values"), "values")
         if version >= _OUTLINE_VERSION:
             cursor.skip(cursor.count("outline points"), "outline points")

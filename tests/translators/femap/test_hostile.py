@@ -83,6 +83,8 @@ def test_faults_of_several_blocks(neu, faults) -> None:
          "a property's number stands twice (1)"),
         (["401", "1,110,0,1,0,", "t", "1.,1.,"], "2 numbers in a line of a material's values"),
         (["601", "1,-601,55,0,0,1,0,", "t", "10,", "0,"], "flags: 10 values"),
+        (["601", "1,-601,55,0,0,1,0,", "t", "1,", "0,", "1,", "1e300,"],
+         "integers that are not whole numbers (1e300,)"),
         (["406", "1,", "t", "1,120,1,1,1,1,0,0,0,"], "a list of held nodes does not end"),
         (["406", "1,", "t", "-1,-1,-1,0,", "1,120,1,", "3,", "1,1,1.,"], "block 406 ends inside a relation's terms"),
         (["406", "1,", "t", "-1,-1,-1,0,", "1,120,1,", "1,", "1,7,1.,", "-1,"], "not a degree of freedom (7)"),

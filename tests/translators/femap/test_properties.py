@@ -204,8 +204,8 @@ def test_groups(neu, load, tmp_path, same) -> None:
         (4, "by rules", [1, 3, 7]),
     ]
     assert [(s.id, s.name, s.family, s.elements.tolist()) for s in model.element_sets] == [
-        (3, "wall", "solid", [1]),
         (3, "wall", "shell", [2]),
+        (3, "wall", "solid", [1]),
     ]
     assert model.warnings[1:] == [
         "m.neu: 1 lists of kind 1 of groups are not read",
