@@ -124,8 +124,9 @@ def inside_out(kind: str, nodes: Ints, xyz: Floats) -> Ints:
     rows = []
     for first in range(0, len(nodes), 100_000):
         points = xyz[nodes[first : first + 100_000, : shape.corners]]
-        jacobian = np.einsum("nkx,kr->nrx", points, weights)
-        volume = np.einsum("nx,nx->n", jacobian[:, 0], np.cross(jacobian[:, 1], jacobian[:, 2]))
+        with np.errstate(over="ignore", invalid="ignore"):  # of coordinates near the largest double
+            jacobian = np.einsum("nkx,kr->nrx", points, weights)
+            volume = np.einsum("nx,nx->n", jacobian[:, 0], np.cross(jacobian[:, 1], jacobian[:, 2]))
         rows.append(first + np.flatnonzero(volume < 0))
     return np.concatenate([np.empty(0, np.int64), *rows])
 
@@ -138,7 +139,8 @@ def middle_order(kind: str, nodes: Ints, xyz: Floats) -> tuple[int, ...] | None:
     shape = TABLE[kind].shape
     edges = np.array(shape.edges)
     points = xyz[nodes[:1000]]
-    middles = (points[:, edges[:, 0]] + points[:, edges[:, 1]]) / 2
-    distance = np.linalg.norm(middles[:, :, None] - points[:, None, shape.corners :], axis=3).mean(axis=0)
+    middles = points[:, edges[:, 0]] / 2 + points[:, edges[:, 1]] / 2
+    with np.errstate(over="ignore", invalid="ignore"):
+        distance = np.linalg.norm(middles[:, :, None] - points[:, None, shape.corners :], axis=3).mean(axis=0)
     place = distance.argmin(axis=1)
     return tuple(place.tolist()) if len(set(place.tolist())) == len(edges) else None

@@ -60,7 +60,7 @@ def read_series(
         cards.faults.stop()
         plain = np.arange(count)
         return Series(blocks, plain, np.zeros(count, np.int64), np.zeros(count, np.int64), plain)
-    made = np.arange(1, len(gaps) + 1) + np.concatenate(([0], np.cumsum(gaps[:-1])))
+    made = np.arange(1, len(gaps) + 1) + np.concatenate(([0], np.cumsum(np.maximum(gaps[:-1], 0))))
     used = int(np.searchsorted(made, count)) + 1  # cards
     if used > len(gaps):
         cards.blocks(layouts, len(gaps) + 1, what)

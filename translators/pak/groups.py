@@ -45,7 +45,7 @@ class Groups:
         for number in range(1, count + 1):
             self._group(number)
         families = {block.family for block in self.model.blocks}
-        flat = bool(len(self.model.xyz)) and not np.ptp(self.model.xyz[:, 2])
+        flat = bool((self.model.xyz[:, 2] == self.model.xyz[0, 2]).all())
         in_space = any(s.kind == "plane" and not s.plane for s in self.model.sections.values())
         self.model.dimension = 2 if families == {"plane"} and flat and not in_space else 3
 

@@ -184,7 +184,8 @@ def hardening(points: Floats, kind: int, E: float) -> Floats:
     """A table of strain and stress as effective plastic strain and stress. kind: INDEP, 1: the strain is the total."""
     table = points.copy()
     if kind == 1 and E:
-        table[:, 0] -= table[:, 1] / E
+        with np.errstate(over="ignore"):
+            table[:, 0] -= table[:, 1] / E
     return table
 
 

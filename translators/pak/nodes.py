@@ -129,7 +129,8 @@ def _between(series: Series, xyz: Floats, polar: NDArray[np.bool_]) -> tuple[Flo
     """
     ends = series.last
     share = (series.place / np.maximum(np.bincount(series.card)[series.card], 1))[:, None]
-    points = xyz[series.card] + share * (xyz[ends] - xyz[series.card])
+    half, other = xyz[series.card] / 2, xyz[ends] / 2  # the whole difference may be past the largest double
+    points = 2 * (half + share * (other - half))
     in_run = series.step != 0
     return points, np.where(in_run, polar[ends], polar[series.card])
 

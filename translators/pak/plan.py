@@ -151,7 +151,8 @@ def _key(
         own = (2, 21) if family == "plane" else (84 if kind == "quad4" else 8, 81)
         netip = own[triangle]
         if asked is not None and asked in TYPES and TYPES[asked].family == family:
-            fits = TYPES[asked].corners == (3 if triangle else 4) or kind == "tri3"
+            first_order = kind in ("quad4", "tri3") or asked not in (84, 85)
+            fits = first_order and (TYPES[asked].corners == (3 if triangle else 4) or kind == "tri3")
             netip = asked if fits else netip
     else:
         netip = 6 if family == "beam" else 1

@@ -11,6 +11,7 @@ from zrno.translators.geometry import measures
 from zrno.translators.model import Model
 from zrno.translators.pak import read, write
 from zrno.translators.pak.elements import COLLAPSED, uncollapsed
+from zrno.translators.text import InputError
 
 Faults = Callable[..., list[str]]
 Deck = Callable[..., str]
@@ -217,6 +218,21 @@ def test_mid_side_nodes_of_unsure_order_are_put_by_geometry(deck, tmp_path: Path
     assert m.blocks[0].nodes[0].tolist() == list(range(TABLE[kind].nodes))
 
 
+def test_coordinates_near_the_largest_double(deck) -> None:
+    first = NODES.splitlines(keepends=True)[0]
+    m = read(deck((first, f"{first[:20]}  -1.7E308  -1.7E308  -1.7E308{first[50:]}")))
+    assert m.xyz[0].tolist() == [-1.7e308] * 3
+    read(deck((first, f"{first[:20]}  -1.7E308   1.7E308  -1.7E308    1\n")
+              , (NODES.splitlines(keepends=True)[2], ""), (NODES.splitlines(keepends=True)[1], "")))  # fmt: skip
+
+
+def test_cards_out_of_step_are_faults(deck) -> None:
+    """Nodes where the next element's card should be look like generation."""
+    element = ELEMENTS[: ELEMENTS.index("    2    0")]
+    with pytest.raises(InputError, match=r"a\.dat:\d+:\d+: error: "):
+        read(deck(("    3    2    0    1", "    3   80    0    1"), elements=element + "\n" + element * 90))
+
+
 def test_models_kept_as_they_are(deck, tmp_path: Path) -> None:
     old = "    1    1    3\n    1    1       7.8\n     200.0\n       0.3\n    3    2    0    1"
     cards = {
@@ -282,8 +298,6 @@ def test_a_point_that_is_missing_scales(deck) -> None:
     ],
 )  # fmt: skip
 def test_faults(deck, old: str, new: str, said: str) -> None:
-    from zrno.translators.text import InputError
-
     with pytest.raises(InputError) as caught:
         read(deck((old, new)))
     assert any(said in line for line in str(caught.value).splitlines()), str(caught.value)
@@ -307,8 +321,6 @@ def test_faults(deck, old: str, new: str, said: str) -> None:
 )
 def test_hostile_counts_are_faults(deck, old: str, new: str) -> None:
     import resource
-
-    from zrno.translators.text import InputError
 
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     try:

@@ -106,6 +106,18 @@ def test_shells_and_planes(tmp_path: Path, mesh: Mesh, strict: ModuleType, famil
         assert {section.plane for section in again.sections.values()} == {"strain"}
 
 
+@pytest.mark.parametrize(("asked", "types"), [(84, [84, 8, 84]), (8, [8, 8, 8]), (81, [84, 8, 81])])
+def test_a_section_may_ask_for_a_type_of_shell(
+    tmp_path: Path, mesh: Mesh, strict: ModuleType, asked: int, types: list[int]
+) -> None:
+    for kind, netip in zip(("quad4", "quad8", "tri3"), types, strict=True):
+        model = mesh(kind)
+        model.sections[1].native["NETIP"] = asked
+        again, _ = there_and_back(model, tmp_path)
+        assert strict.read(tmp_path / "a.dat").groups[0][0] == netip
+        assert again.element_counts() == {kind: 1}
+
+
 def test_trusses_and_beams(tmp_path: Path, mesh: Mesh, strict: ModuleType) -> None:
     model = mesh("line2", "line2")
     model.blocks[1].family = "beam"
