@@ -25,6 +25,7 @@ _U = np.uint64
 _LEAST_POWER, _MOST_POWER = -342, 308
 _BLANK, _COMMA, _PLUS, _MINUS, _POINT, _ZERO = (np.uint8(ord(c)) for c in " ,+-.0")
 _TAB = np.uint8(9)
+_SHORT = 15  # digits that a double holds
 
 
 def _powers_of_five() -> NDArray[np.uint64]:
@@ -283,8 +284,15 @@ def _free(data, starts, ends, only_commas, values, bits, counts, care):
             while last > a and (_byte(data, last - 1) == _BLANK or _byte(data, last - 1) == _TAB):
                 last -= 1
             if count < limit:
-                if last == a:
-                    values[i, count] = 0.0
+                k, whole = a, 0  # most fields are short whole numbers
+                while k < last <= a + _SHORT:
+                    d = np.uint8(data[k] - _ZERO)
+                    if d > 9:
+                        break
+                    whole = whole * 10 + np.int64(d)
+                    k += 1
+                if k == last:
+                    values[i, count] = whole
                 elif not _real(data, a, last, 0, values[i], bits[i], count):
                     values[i, count] = np.nan
                     care[i] = True

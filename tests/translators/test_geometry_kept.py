@@ -10,6 +10,7 @@ import pytest
 
 from zrno.translators import load_settings, read, to_particles, write
 from zrno.translators.elements import TABLE
+from zrno.translators.fem import to_fem
 from zrno.translators.geometry import measures
 from zrno.translators.model import Model
 
@@ -45,7 +46,7 @@ def mesh(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
     return read(path)
 
 
-@pytest.mark.parametrize("suffix", [".msh", ".k", ".vtu"])
+@pytest.mark.parametrize("suffix", [".msh", ".k", ".neu", ".vtu"])
 def test_volume_of_each_part(tmp_path: Path, mesh: Model, suffix: str) -> None:
     target = tmp_path / f"bodies{suffix}"
     write(mesh, target)
@@ -66,3 +67,14 @@ def test_mass_of_each_part_as_particles(tmp_path: Path, mesh: Model) -> None:
     assert particles.mass is not None  # ten columns hold a mass to nine digits only
     masses = {m.name: float(particles.mass[particles.material == m.id].sum()) for m in again.materials.values()}
     assert masses == pytest.approx({name: 3 * volume for name, volume in by_part(mesh).items()}, rel=1e-9)
+
+
+def test_volume_of_each_part_as_finite_elements(tmp_path: Path, mesh: Model) -> None:
+    """Names are not in a .dat deck."""
+    settings = load_settings(overrides={"materials.*.density": 3, "materials.*.E": 1, "materials.*.nu": 0})
+    write(to_fem(mesh, settings)[0], tmp_path / "bodies.dat")
+    again = read(tmp_path / "bodies.dat")
+    found = sorted(
+        sum(float(measures(b, again.xyz)[b.part == part].sum()) for b in again.blocks) for part in again.parts
+    )
+    assert found == pytest.approx(sorted(by_part(mesh).values()), rel=1e-9)

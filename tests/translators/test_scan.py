@@ -100,6 +100,11 @@ def test_free_fields() -> None:
     assert values[1].tolist() == [4, 5]
 
 
+def test_lines_of_zeros() -> None:
+    lines = ["0,0, 0,", "0 1", "", " \t0.0", "0,a", "00009"]
+    assert scan.zeros(*spans(lines)).tolist() == [True, False, True, True, False, False]
+
+
 def test_line_spans() -> None:
     data = b"a\r\n\r\nbc\n\n" * 2 + b"end"
     starts, ends = line_spans(data)

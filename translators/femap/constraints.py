@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from zrno.translators.femap.cursor import Cursor
-from zrno.translators.femap.ids import Places
+from zrno.translators.femap.ids import Places, by_value
 from zrno.translators.model import Constraint, Equation, Floats, Ints, Model, Source
 
 _GEOMETRY_LISTS = 3
@@ -62,8 +62,7 @@ class ConstraintSets:
             missing += int((~there).sum())
             at, dofs = at[there], given.nodes[there, 3:] != 0
             key = system[at] * 64 + dofs @ (1 << np.arange(6))
-            for value in dict.fromkeys(key.tolist()):
-                mine = key == value
+            for value, mine in by_value(key):
                 constraint = Constraint(at[mine], dofs[mine], given.number, given.title, source=given.source)
                 constraint.system = value >> 6
                 model.constraints.append(constraint)

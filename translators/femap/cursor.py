@@ -11,6 +11,7 @@ from zrno.translators.model import Ints, Source
 
 _NULL = "<NULL>"
 _FIRST_CHUNK, _LARGEST_CHUNK = 64, 1 << 18
+_MOST_IN_A_LINE = 2048  # numbers
 
 
 class Cursor:
@@ -76,11 +77,19 @@ class Cursor:
             found += self.numbers(1, f"{what}: {count} values")
         return found[:count]
 
+    def wholes(self, count: int, what: str) -> list[int]:
+        """The next `count` whole numbers, on as many lines as they take."""
+        found = self.values(count, what)
+        if not all(value.is_integer() and abs(value) < 2**53 for value in found):
+            self.lines.fail(self.at - 1, f"{what} that are not whole numbers", self.lines.text(self.at - 1))
+        return [int(value) for value in found]
+
     def count(self, what: str) -> int:
         """A count, on a line of its own; one that the block cannot hold is a fault."""
-        number = self.integers(1, what, 0)[0]
-        if number > 2048 * (self.block.last - self.at):
-            self.lines.fail(self.at - 1, f"{number} {what} where {self.block.last - self.at} lines follow")
+        number = self.integers(1, f"a count of {what}", 0)[0]
+        left = self.block.last - self.at
+        if number > _MOST_IN_A_LINE * left:
+            self.lines.fail(self.at - 1, f"{number} {what} where {left} lines follow", self.lines.text(self.at - 1))
         return number
 
     def title(self) -> str:
@@ -111,11 +120,11 @@ class Cursor:
             heads = rows[::stride]
             if not len(heads):
                 self.fail(f"a list of {what} does not end", "a line that begins with -1")
-            first = self.lines.table(heads, 1, what)[:, 0]
-            ends = [i for i in np.flatnonzero(first == -1).tolist() if self.lines.begins_with_end(int(heads[i]))]
-            if ends:
-                found.append(heads[: ends[0]])
-                self.at = int(heads[ends[0]]) + 1
+            ends = self.lines.list_ends(heads)
+            if ends.any():
+                count = int(np.argmax(ends))
+                found.append(heads[:count])
+                self.at = int(heads[count]) + 1
                 return np.concatenate(found)
             if len(rows) < len(heads) * stride:
                 self.at = self.block.last

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import NoReturn
 
 import numpy as np
+from numpy.typing import NDArray
 
 from zrno.translators.model import Floats, Ints
 from zrno.translators.text import MAX_FAULTS, Faults, line_spans, parse_real
@@ -22,9 +23,10 @@ _LONGEST_LINE = 4096  # bytes; the format's own limit is 255
 _FEW, _VERY_FEW = 50_000, 100  # numbers: fewer are parsed in Python before the jitted kernels are loaded, and after
 _LARGE = 4 << 20  # bytes of a file for which they are loaded at once
 _EXACT = 2.0**53  # doubles hold every whole number up to here
-_LONE = re.compile(rb"\s*(\d{3,5})[\s,]*")
+_LONE = re.compile(rb"\d{3,5}")
 _FIELD = re.compile(rb"[ \t\r\f\v]*([^ \t\r\f\v,]*)[ \t\r\f\v]*(,?)")
 _KNOWN = {100, *range(401, 500), 506, 507, 533, 601, 615, 822, 918, 919, 1007, 1051}
+_WITH_LISTS = {404, 406, 407, 408, 420, 506, 507, 1007}  # whose lists may end with lines that are -1 alone
 _BLANKS = np.zeros(256, bool)
 _BLANKS[list(b" \t\r\f\v")] = True
 _BOM = b"\xef\xbb\xbf"
@@ -184,21 +186,31 @@ class Lines:
 
         Notes and leaves where one is not whole, or below `least`.
         """
+        with np.errstate(invalid="ignore"):  # beyond 64 bits: noted below
+            found: Ints = values.astype(np.int64)
+        if not found.size or (
+            (found == values).all() and found.min() >= least and max(-found.min(), found.max()) < _EXACT
+        ):
+            return found
         good = (np.abs(values) < _EXACT) & (np.rint(values) == values) & (values >= least)
-        if not good.all():
-            for i in np.flatnonzero(~good.all(axis=1))[:MAX_FAULTS].tolist():
-                k = int(np.argmin(good[i]))
-                fields = self.fields(int(rows[i]))
-                column, word = fields[k] if k < len(fields) else (1, b"")
-                self.fault(int(rows[i]), column, f"not {what}", word, what)
-            raise Broken
-        found: Ints = values.astype(np.int64)
+        for i in np.flatnonzero(~good.all(axis=1))[:MAX_FAULTS].tolist():
+            k = int(np.argmin(good[i]))
+            fields = self.fields(int(rows[i]))
+            column, word = fields[k] if k < len(fields) else (1, b"")
+            self.fault(int(rows[i]), column, f"not {what}", word, what)
+        raise Broken
+
+    def list_ends(self, rows: Ints) -> NDArray[np.bool_]:
+        """Which of lines end a list: their first field is -1, as a whole number."""
+        starts, ends, last = self._starts[rows], self._ends[rows], len(self._data) - 1
+        first, second, third = (self._bytes[np.minimum(starts + k, last)] for k in range(3))
+        alone = (ends == starts + 2) | (third == ord(",")) | _BLANKS[third]
+        found: NDArray[np.bool_] = (ends >= starts + 2) & (first == ord("-")) & (second == ord("1")) & alone
         return found
 
     def begins_with_end(self, row: int) -> bool:
-        """Whether the first field of a line is -1 as a list's end is: not a real number."""
-        fields = self.fields(row)
-        return bool(fields) and fields[0][1] == b"-1"
+        """Whether a line ends a list."""
+        return bool(self.list_ends(np.array([row]))[0])
 
     def below(self, rows: Ints, offset: int) -> Ints:
         """The lines that stand `offset` lines below others, blank ones not counted."""
@@ -216,50 +228,45 @@ class Lines:
 
 
 def blocks(lines: Lines) -> list[Block]:
-    """The blocks of a file in its order; notes blocks that do not end."""
+    """The blocks of a file in its order; notes what is wrong between them."""
     filled = np.flatnonzero(~lines.blank)
-    marks = np.flatnonzero(np.isin(filled, lines.marks(), assume_unique=True))
+    marks = np.flatnonzero(np.isin(filled, lines.marks(), assume_unique=True)).tolist()
     is_mark = np.zeros(len(filled) + 2, bool)
     is_mark[marks] = True
+    if not marks or marks[0] != 0:
+        lines.fault(int(filled[0]) if len(filled) else 0, 1, "not the start of a block", expected="a line -1")
+        lines.faults.stop()
     found: list[Block] = []
-    head, number, start = 0, 0, 0  # of the block that is open
+    number, head = 0, 0  # of the block that is open: 0 where none is
+    skip = -1
 
     def number_at(place: int) -> int:
-        match = _LONE.fullmatch(lines._text(int(filled[place]))) if place < len(filled) else None
-        return int(match[1]) if match else 0
+        fields = lines.fields(int(filled[place])) if place < len(filled) else []
+        match = _LONE.fullmatch(fields[0][1]) if len(fields) == 1 else None
+        return int(match[0]) if match else 0
 
-    def close(last: int) -> None:
-        if number:
-            found.append(Block(number, int(head), int(start), last))
-
-    if not len(marks) or marks[0] != 0:
-        lines.fault(0, 1, "not the start of a block", expected="a line -1")
-        lines.faults.stop()
-    skip = -1
-    for at in marks.tolist():
+    for at in marks:
         if at <= skip:
             continue
-        if not found and not number and at == 0:
-            follows = 0
-        elif at + 1 == len(filled):
-            close(int(filled[at]))
+        begin = at  # the place of the -1 that starts the next block
+        if number:
+            here = int(filled[at])
+            twice = is_mark[at + 1] and (number_at(at + 2) > 0 or number not in _WITH_LISTS)
+            if at + 1 == len(filled) or twice:
+                begin = at + 1
+            elif number_at(at + 1) in _KNOWN and not is_mark[at - 1]:
+                lines.fault(here, 1, f"block {number} does not end", expected="a line -1 before this one")
+            else:
+                continue
+            found.append(Block(number, head, head + 1, here))
             number = 0
-            continue
-        elif is_mark[at + 1] and number_at(at + 2):
-            close(int(filled[at]))
-            follows = at + 1
-        elif number_at(at + 1) in _KNOWN and not is_mark[at - 1]:
-            close(int(filled[at]))
-            lines.fault(int(filled[at]), 1, f"block {number} does not end", expected="a line -1 before this one")
-            follows = at
-        else:
-            continue
-        number = number_at(follows + 1)
-        head = int(filled[follows + 1]) if follows + 1 < len(filled) else len(lines)
+        if begin >= len(filled):
+            break
+        number, skip = number_at(begin + 1), begin
+        head = int(filled[begin + 1]) if begin + 1 < len(filled) else len(lines)
         if not number:
-            lines.fault(head, 1, "not the number of a block", expected="100, 401, 403, ...")
-            lines.faults.stop()
-        start, skip = head + 1, follows
+            said = lines.text(head) if head < len(lines) else ""
+            lines.fault(head, 1, "not the number of a block", said, "100, 401, 403, ...")
     if number:
-        close(len(lines))
+        found.append(Block(number, head, head + 1, len(lines)))
     return found

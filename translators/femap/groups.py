@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from zrno.translators.femap.cursor import Cursor
 from zrno.translators.femap.framing import Broken
-from zrno.translators.femap.ids import Places
+from zrno.translators.femap.ids import Places, by_value
 from zrno.translators.model import ElementSet, Ints, Model, NodeSet, Source
 
 NODE_LIST, ELEMENT_LIST = 7, 8
@@ -67,17 +67,23 @@ class Groups:
         """The model's sets: a node set a group, an element set a group and family."""
         other: Counter[str] = Counter()
         missing = 0
+        blocks = [block for block in model.blocks if len(block.ids)]
+        known = Places(np.concatenate([np.zeros(0, np.int64), *(block.ids for block in blocks)]))
+        owner = np.repeat(np.arange(len(blocks)), [len(block.ids) for block in blocks])
         for group in self.found:
             at, there = nodes.of(group.members(NODE_LIST, NODE_RULE, nodes.ids))
             missing += int((~there).sum())
             if len(at[there]):
                 model.node_sets.append(NodeSet(group.number, group.title, at[there], group.source))
             ids = group.members(ELEMENT_LIST, ELEMENT_RULE, elements.ids)
-            for block in model.blocks:
-                mine = ids[np.isin(ids, block.ids)]
-                if len(mine):
-                    self._add(model, group, block.family, mine)
-            missing += int((~elements.of(ids)[1]).sum())
+            at, there = known.of(ids)
+            missing += int((~there).sum())
+            families: dict[str, list[Ints]] = {}
+            for block, some in by_value(owner[at[there]]):
+                families.setdefault(blocks[block].family, []).append(some)
+            for family, places in families.items():
+                mine = ids[there][np.sort(np.concatenate(places))]
+                model.element_sets.append(ElementSet(group.number, group.title, family, mine, group.source))
             for kind in group.lists.keys() - {NODE_LIST, ELEMENT_LIST}:
                 other[f"lists of kind {kind}"] += 1
             for kind in group.rules.keys() - {NODE_RULE, ELEMENT_RULE}:
@@ -87,15 +93,6 @@ class Groups:
             model.warnings += [f"{path}: {count} {what} of groups are not read" for what, count in other.items()]
             if missing:
                 model.warnings.append(f"{path}: {missing} members of groups are not read: they are not in the mesh")
-
-    @staticmethod
-    def _add(model: Model, group: _Group, family: str, ids: Ints) -> None:
-        """Elements of one block, to the group's set of their family."""
-        for known in model.element_sets:
-            if known.source is group.source and known.family == family:
-                known.elements = np.concatenate((known.elements, ids))
-                return
-        model.element_sets.append(ElementSet(group.number, group.title, family, ids, group.source))
 
 
 def _read(cursor: Cursor) -> _Group:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -30,8 +32,16 @@ class Places:
         if self._run:
             place = wanted - self.ids[0]
             there = (place >= 0) & (place < len(self.ids))
-            return np.where(there, place, 0), there
+            return (place if there.all() else np.where(there, place, 0)), there
         place = np.minimum(np.searchsorted(self._sorted, wanted), len(self.ids) - 1)
         there = self._sorted[place] == wanted
         place = np.where(there, place, 0)
         return (place if self._plain else self._order[place]), there
+
+
+def by_value(keys: Ints) -> Iterator[tuple[int, Ints]]:
+    """The distinct values of an array (n,), in the order in which they first stand there, and the places of each."""
+    values, first, inverse, counts = np.unique(keys, return_index=True, return_inverse=True, return_counts=True)
+    places = np.split(np.argsort(inverse, kind="stable"), np.cumsum(counts)[:-1])
+    for i in np.argsort(first, kind="stable").tolist():
+        yield int(values[i]), places[i]

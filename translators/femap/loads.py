@@ -11,23 +11,22 @@ from collections import Counter
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from zrno.translators.femap.cursor import Cursor
-from zrno.translators.femap.ids import Places
+from zrno.translators.femap.ids import Places, by_value
 from zrno.translators.femap.topology import faces_of
 from zrno.translators.model import BodyLoad, FaceLoad, Floats, Ints, Model, NodalLoad, Source
 
 _OPTION_LINES, _FEWEST, _MOST = 9, 4, 16  # between the heat options and the first load: usual, and what is tried
+_MOST_FUNCTION = 10**9
 _SET_FIELDS = 5  # numbers of a set's third line
 # 407's numbers of load types, as 507 has them
 TYPES_407 = {1: 1, 2: 3, 3: 7, 5: 11, 6: 10, 7: 5, 8: 12, 10: 41, 11: 42, 13: 47, 14: 44, 15: 45, 16: 46}
 _NAMES = {10: "heat flux on nodes", 11: "heat generation at nodes", 12: "nonlinear transient loads",
           41: "distributed line loads", 44: "heat flux on elements", 45: "convection", 46: "radiation",
           47: "heat generation in elements"}  # fmt: skip
-# 507's type -> kind of `NodalLoad`, and what is added to the number of a degree of freedom
-KINDS = {1: ("force", 0), 2: ("force", 3), 3: ("displacement", 0), 4: ("displacement", 3), 5: ("velocity", 0),
-         6: ("velocity", 3), 7: ("acceleration", 0), 8: ("acceleration", 3)}  # fmt: skip
+# kinds of `NodalLoad`: 507's types of the degrees of freedom 1 to 3, and of 4 to 6
+KINDS = {"force": (1, 2), "displacement": (3, 4), "velocity": (5, 6), "acceleration": (7, 8)}
 PRESSURE = 42
 
 
@@ -74,8 +73,8 @@ class LoadSets:
     def _options(self, cursor: Cursor, new: _Set) -> None:
         """What stands before the loads: gravity is kept."""
         _, _, temperature, gravity, spin = cursor.numbers(_SET_FIELDS, "options of a load set")[:5]
-        new.gravity = cursor.numbers(3, "gravity")
-        new.functions = [int(value) for value in new.gravity[3:6]]
+        new.gravity = cursor.numbers(3, "gravity")[:6]
+        new.functions = [int(value) for value in new.gravity[3:] if value.is_integer() and abs(value) < _MOST_FUNCTION]
         turning = cursor.numbers(3, "rotational acceleration")
         cursor.skip(1, "an origin")
         omega = cursor.numbers(3, "a rotational velocity")
@@ -158,14 +157,13 @@ class LoadSets:
         for given in self.found:
             if any(given.gravity[:3]):
                 self._gravity(model, given)
-            for kind, add in dict.fromkeys(KINDS.values()):
-                types = [number for number, what in KINDS.items() if what == (kind, add)]
-                self._nodal(model, given, np.isin(given.head[:, 1], types), kind, add, nodes)
-            self._pressures(model, given, np.flatnonzero(given.head[:, 1] == PRESSURE), elements)
-            for number in np.unique(given.head[:, 1]).tolist():
-                if number not in KINDS and number != PRESSURE:
-                    name = _NAMES.get(number, f"loads of type {abs(number)}")
-                    self.said[name] += int((given.head[:, 1] == number).sum())
+            types = given.head[:, 1]
+            for kind in KINDS:
+                mine = np.flatnonzero(np.isin(types, KINDS[kind]))
+                self._nodal(model, given, kind, 3 * (types[mine] == KINDS[kind][1]), mine, nodes)
+            self._pressures(model, given, np.flatnonzero(types == PRESSURE), elements)
+            for number, some in by_value(types[~np.isin(types, [PRESSURE, *np.ravel([*KINDS.values()])])]):
+                self.said[_NAMES.get(number, f"loads of type {abs(number)}")] += len(some)
             at, there = nodes.of(given.temperatures[:, 0].astype(np.int64))
             self.said["loads on nodes that are not there"] += int((~there).sum())
             if there.any():
@@ -187,52 +185,37 @@ class LoadSets:
         self.said["functions of gravity that differ"] += len(functions) > 1
         model.body_loads.append(BodyLoad((x, y, z), curve or None, source=given.source))
 
-    def _nodal(self, model: Model, given: _Set, mine: NDArray[np.bool_], kind: str, add: int, nodes: Places) -> None:
-        """Loads of one kind, those with one function and system together."""
-        head, flags, values = given.head[mine], given.flags[mine], given.values[mine]
-        at, there = nodes.of(head[:, 0])
+    def _nodal(self, model: Model, given: _Set, kind: str, add: Ints, mine: Ints, nodes: Places) -> None:
+        """Loads of one kind, those with one function and system together; add: to numbers of degrees of freedom."""
+        at, there = nodes.of(given.head[mine, 0])
         self.said["loads on nodes that are not there"] += int((~there).sum())
-        head, flags, values, at = head[there], flags[there] != 0, values[there], at[there]
-        for system, curve in dict.fromkeys(map(tuple, head[:, 2:].tolist())):
-            some = (head[:, 2:] == (system, curve)).all(axis=1)
-            load, dof = np.nonzero(flags[some])
-            if not len(load):
-                continue
-            same = next((n for n in model.nodal_loads if (n.kind, n.curve, n.system, n.source)
-                         == (kind, curve or None, system, given.source)), None)  # fmt: skip
-            new = (at[some][load], dof + 1 + add, values[some][load, dof])
-            if same is not None:
-                same.nodes, same.dofs = np.concatenate((same.nodes, new[0])), np.concatenate((same.dofs, new[1]))
-                same.values = np.concatenate((same.values, new[2]))
-            else:
-                model.nodal_loads.append(
-                    NodalLoad(kind, *new, curve or None, given.number, given.title, None, system, source=given.source)
-                )
+        mine, at, add = mine[there], at[there], add[there]
+        pairs, inverse = np.unique(given.head[mine, 2:], axis=0, return_inverse=True)
+        for which, some in by_value(inverse.reshape(-1)):
+            load, dof = np.nonzero(given.flags[mine[some]])
+            if len(load):
+                system, curve = pairs[which].tolist()
+                terms = (at[some][load], dof + 1 + add[some][load], given.values[mine[some]][load, dof])
+                new = NodalLoad(kind, *terms, curve or None, given.number, given.title, None, system)
+                new.source = given.source
+                model.nodal_loads.append(new)
 
     def _pressures(self, model: Model, given: _Set, which: Ints, elements: Places) -> None:
         """Pressures on faces, those with one function together."""
         _, there = elements.of(given.head[which, 0])
         self.said["pressures on elements that are not there"] += int((~there).sum())
         which = which[there]
-        for curve in dict.fromkeys(given.head[which, 3].tolist()):
-            faces, values, order = [], [], []
-            some = which[given.head[which, 3] == curve]
-            done = np.zeros(len(some), bool)
-            for block in model.blocks:
-                at, mine = Places(block.ids).of(given.head[some, 0])
-                mine &= ~done
-                for number, corners in enumerate(faces_of(block.kind), 1):
-                    hit = np.flatnonzero(mine & (given.flags[some, 0] == number))
-                    if len(hit):
-                        found = np.full((len(hit), 4), -1)
-                        found[:, : len(corners)] = block.nodes[at[hit]][:, list(corners)]
-                        faces.append(found)
-                        values.append(given.values[some[hit], :1])
-                        order.append(hit)
-                        done[hit] = True
-            self.said["pressures on faces that are not known"] += int((~done).sum())
-            if order:
-                by = np.argsort(np.concatenate(order), kind="stable")
-                load = FaceLoad(np.concatenate(faces)[by], np.concatenate(values)[by], curve=curve or None)
-                load.id, load.name, load.source = given.number, given.title, given.source
-                model.face_loads.append(load)
+        faces, values = np.full((len(which), 4), -1), given.values[which, :1]
+        done = np.zeros(len(which), bool)
+        for block in model.blocks:
+            at, mine = Places(block.ids).of(given.head[which, 0])
+            for number, corners in enumerate(faces_of(block.kind), 1):
+                hit = np.flatnonzero(mine & (given.flags[which, 0] == number))
+                faces[hit, : len(corners)] = block.nodes[at[hit]][:, list(corners)]
+                done[hit] = True
+        self.said["pressures on faces that are not known"] += int((~done).sum())
+        which, faces, values = which[done], faces[done], values[done]
+        for curve, some in by_value(given.head[which, 3]):
+            load = FaceLoad(faces[some], values[some], curve=curve or None)
+            load.id, load.name, load.source = given.number, given.title, given.source
+            model.face_loads.append(load)

@@ -83,10 +83,10 @@ def read_601(cursor: Cursor) -> list[Record]:
         number, _, _, kind, subtype, _, own = cursor.integers(4, "a material's number", 1, 7)
         record = Record(number, cursor.title(), kind, source, subtype)
         cursor.values(cursor.count("flags"), "flags")
-        codes = [int(value) for value in cursor.values(cursor.count("integers"), "integers")] + [0] * 5
+        codes = cursor.wholes(cursor.count("integers"), "integers") + [0] * 5
         values = cursor.values(cursor.count("values"), "values")
         record.values = {place: value for place, value in enumerate(values) if value}
-        functions = [int(value) for value in cursor.values(cursor.count("functions"), "functions")] + [0] * 6
+        functions = cursor.wholes(cursor.count("functions"), "functions") + [0] * 6
         tables = cursor.values(cursor.count("tables"), "tables")
         record.nonlinear = (codes[2], functions[5], codes[3], codes[4])
         record.functions = int(np.count_nonzero(functions) + np.count_nonzero(tables) - (functions[5] != 0)) + own

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,8 +11,8 @@ from numpy.typing import NDArray
 
 from zrno.translators.elements import TABLE
 from zrno.translators.femap.cursor import Cursor
-from zrno.translators.femap.framing import Lines
-from zrno.translators.femap.ids import Places
+from zrno.translators.femap.framing import Broken, Lines
+from zrno.translators.femap.ids import Places, by_value
 from zrno.translators.femap.topology import GAP, LISTS, PACKED, PYRAMIDS, RIGID_2, TOPOLOGIES, TYPES, UNKNOWN
 from zrno.translators.model import ElementBlock, Floats, Ints, Model
 from zrno.translators.text import MAX_FAULTS
@@ -82,8 +83,9 @@ class Elements:
         at, size, searched = 0, _FIRST_CHUNK, 0
         while at < len(rows):
             some = rows[at : at + size * _STRIDE]
+            some = some[: len(some) - len(some) % _STRIDE]  # a list may stand where the rest is
             begin = some[::_STRIDE]
-            if len(some) < len(begin) * _STRIDE:
+            if not len(begin):
                 cursor.at = cursor.block.last
                 cursor.fail("the block ends inside an element", f"{_STRIDE} lines")
             head = lines.whole(lines.table(begin, _HEAD, "an element's first line", 5), begin)
@@ -132,8 +134,9 @@ class Elements:
             lines.fault(int(self.rows[twice]), 1, "an element's number stands twice", number)
             lines.faults.stop()
         builder = _Builder(self, model, lines, places)
-        for topology in dict.fromkeys(self.head[:, 4].tolist()):
-            builder.add(topology)
+        for topology, which in by_value(self.head[:, 4]):
+            with suppress(Broken):  # what is wrong is noted
+                builder.add(topology, which)
         lines.faults.stop()
         builder.finish()
         return ids
@@ -148,9 +151,8 @@ class _Builder:
         self.said: Counter[str] = Counter()
         self.first: dict[str, int] = {}
 
-    def add(self, topology: int) -> None:
-        """All elements of a topology."""
-        which = np.flatnonzero(self.elements.head[:, 4] == topology)
+    def add(self, topology: int, which: Ints) -> None:
+        """All elements of a topology; which: their places."""
         rigid = self.elements.head[which, 3] == _RIGID_TYPE
         self._say("rigid elements are not read", which[rigid])
         which = which[~rigid]
@@ -193,7 +195,7 @@ class _Builder:
 
     def _block(self, which: Ints, nodes: Ints, kind: str, order: tuple[int, ...]) -> None:
         """Elements of one kind, family by family."""
-        nodes = nodes[:, list(order)]
+        nodes = nodes[:, : len(order)] if order == tuple(range(len(order))) else nodes[:, list(order)]
         corners = TABLE[kind].shape.corners
         missing = (nodes[:, corners:] == 0).any(axis=1)
         if missing.any():
@@ -209,17 +211,19 @@ class _Builder:
                 message = f"element {int(self.elements.head[which[i], 0])} has a node that is not there"
                 self.lines.fault(row, 1, message, str(number), "a node of block 403")
             return
-        types = self.elements.head[which, 3]
-        families: dict[str, list[int]] = {}
-        for number in dict.fromkeys(types.tolist()):
+        families: dict[str, list[Ints]] = {}
+        for number, some in by_value(self.elements.head[which, 3]):
             known = TYPES.get(number, UNKNOWN)
-            families.setdefault(known.family, []).append(number)
+            families.setdefault(known.family, []).append(some)
             if not known.sure:
                 said = f"elements of type {number} ({known.name}) are read as {known.family or 'elements of no family'}"
-                self._say(said, which[types == number])
-        for family, numbers in families.items():
-            mine = np.isin(types, numbers)
-            self._append(which[mine], at[mine], kind, family)
+                self._say(said, which[some])
+        for family, places in families.items():
+            if len(places) == len(families) == 1:
+                self._append(which, at, kind, family)
+            else:
+                mine = np.sort(np.concatenate(places))
+                self._append(which[mine], at[mine], kind, family)
 
     def _append(self, which: Ints, nodes: Ints, kind: str, family: str) -> None:
         head = self.elements.head[which]

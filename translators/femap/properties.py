@@ -37,10 +37,10 @@ def read(cursor: Cursor, model: Model, version: tuple[int, int]) -> None:
             cursor.skip(1, "")
             continue
         source = cursor.source
-        number, color, material, kind, layer, system = cursor.integers(5, "a property's number", 1, 6)
+        number, _, material, kind, layer, system = cursor.integers(5, "a property's number", 1, 6)
         title = cursor.title()
         flags = cursor.integers(1, "a property's flags", most=4)
-        laminate = [int(value) for value in cursor.values(cursor.count("layers"), "layers")]
+        laminate = cursor.wholes(cursor.count("layers"), "layers")
         values = cursor.values(cursor.count("values"), "values")
         if version >= _OUTLINE_VERSION:
             cursor.skip(cursor.count("outline points"), "outline points")
@@ -53,7 +53,7 @@ def read(cursor: Cursor, model: Model, version: tuple[int, int]) -> None:
         names = value_names(kind)
         left = {i: value for i, value in enumerate(values) if value and i >= len(names)}
         for key, item, default in (("flags", flags, [0, 0, 0, 0]), ("laminate", [m for m in laminate if m], []),
-                                   ("values", left, {}), ("system", system, 0), ("color", color, 0),
+                                   ("values", left, {}), ("system", system, 0),
                                    ("layer", layer, 1)):  # fmt: skip
             if item != default:
                 native[key] = item

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from zrno.translators.femap.ids import by_value
 from zrno.translators.femap.properties import value_names
 from zrno.translators.femap.text_out import CHUNK, line, pointed, rows, title
 from zrno.translators.femap.topology import NUMBERS, PYRAMIDS, TOPOLOGIES, TYPES, UNKNOWN, type_of
@@ -29,17 +30,18 @@ class Mesh:
         self.system = np.zeros(len(model.xyz), np.int64)  # filled by the constraints
         self.blocks = [block for block in model.blocks if len(block.ids) and not self._is_particles(block)]
         self.ids = self._element_ids()
-        used = {int(number) for block in self.blocks for number in np.unique(block.part)}
-        numbers = dict.fromkeys([*model.parts, *sorted(used)])
-        self.property_of = {number: number for number in numbers if 0 < number <= _LARGEST}
-        for number in numbers:
-            if number not in self.property_of:
-                self.property_of[number] = 1 + max(self.property_of.values(), default=0)
-                report.approximate("part numbers", 1, f"{number} as {self.property_of[number]}: FEMAP's are from 1")
-        self.types = {
-            number: next((self._type(b, number) for b in self.blocks if (b.part == number).any()), 0)
-            for number in self.property_of
-        }
+        self.parts_of = [list(by_value(block.part)) for block in self.blocks]  # number and places of each part
+        blocks_of: dict[int, list[ElementBlock]] = {number: [] for number in model.parts}
+        for block, parts in zip(self.blocks, self.parts_of, strict=True):
+            for number, _ in parts:
+                blocks_of.setdefault(number, []).append(block)
+        self.blocks_of = blocks_of
+        self.property_of = {number: number for number in blocks_of if 0 < number <= _LARGEST}
+        top = max(self.property_of.values(), default=0)
+        for number in blocks_of.keys() - self.property_of.keys():
+            top += 1
+            self.property_of[number] = top
+            report.approximate("part numbers", 1, f"{number} as {top}: FEMAP's are from 1")
 
     def _is_particles(self, block: ElementBlock) -> bool:
         if block.family in PARTICLE_FAMILIES:
@@ -102,7 +104,7 @@ class Mesh:
 
     def elements(self) -> Iterator[str]:
         """The body of block 404."""
-        for block, ids in zip(self.blocks, self.ids, strict=True):
+        for block, ids, parts in zip(self.blocks, self.ids, self.parts_of, strict=True):
             kind = _SIMPLER.get(block.kind, block.kind)
             self._report_block(block, kind)
             topology, order = NUMBERS[kind], list(TOPOLOGIES[NUMBERS[kind]][1])
@@ -114,8 +116,7 @@ class Mesh:
                     nodes[:, 4:8] = nodes[:, 4:5]
                     nodes[:, 16:] = nodes[:, 4:5] if len(order) > 8 else 0
             types, properties = np.zeros(len(ids), np.int64), np.zeros(len(ids), np.int64)
-            for number in np.unique(block.part).tolist():
-                mine = block.part == number
+            for number, mine in parts:
                 types[mine], properties[mine] = self._type(block, number), self.property_of[number]
             angle, node, orient = self._own_data(block)
             head = np.column_stack([ids, properties, types, np.full(len(ids), topology), node, angle != 0, nodes])
@@ -153,15 +154,16 @@ class Mesh:
         for part, number in self.property_of.items():
             section, found = self._section(part), self.model.parts.get(part)
             native = section.native if section is not None and self.own else {}
-            kind = int(native.get("type", 0)) or self.types[part] or 25
-            families = {b.family for b in self.blocks if (b.part == part).any()}
+            blocks = self.blocks_of[part]
+            kind = int(native.get("type", 0)) or (self._type(blocks[0], part) if blocks else 25)
+            families = {block.family for block in blocks}
             if len(families) > 1:
                 said = f"part {part}: one property, of type {kind} ({TYPES.get(kind, UNKNOWN).name})"
                 self.report.approximate("families of elements", len(families), said)
             values = self._values(section, kind, native)
             laminate = [int(m) for m in native.get("laminate", [])]
             name = (found.name if found else "") or (section.name if section else "")
-            yield line((number, native.get("color", 110), (found.material if found else None) or 0, kind,
+            yield line((number, 110, (found.material if found else None) or 0, kind,
                         native.get("layer", 1), native.get("system", 0)))  # fmt: skip
             yield title(name, self.report) + line(native.get("flags", [0, 0, 0, 0]))
             yield line([len(laminate)]) + "".join(rows(laminate, 8))

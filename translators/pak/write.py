@@ -34,7 +34,7 @@ from zrno.translators.text import Layout, write_atomically
 
 _MOST_PERIODS = 100
 _LONGEST_NAME = 20  # of a file, on PAK's input
-_ROUNDING = 1e-6  # of the bounding box, that narrow coordinates may cost
+_ROUNDING = 1e-10  # of the bounding box, that narrow coordinates may cost: volumes are kept to 1e-9
 _SAID = {
     "title", "format", "version", "dimension", "node_ids", "xyz", "node_data", "blocks", "parts", "sections",
     "materials", "curves", "fixed", "constraints", "equations", "nodal_loads", "face_loads", "body_loads",

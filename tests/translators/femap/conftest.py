@@ -11,7 +11,10 @@ import pytest
 from zrno.translators.femap import read
 from zrno.translators.model import Model
 
-CUBE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+CUBE = [
+    tuple(map(float, p))
+    for p in [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+]
 
 
 def block(number: int, *lines: str) -> str:
@@ -49,7 +52,7 @@ def head(version: str = "4.41") -> str:
 
 @pytest.fixture(scope="session")
 def neu() -> SimpleNamespace:
-    """What builds a file's text: `block`, `nodes`, `element`, `head`; a cube `CUBE`, its `BRICK` and its `MESH`."""
+    """What builds a file's text: `block`, `nodes`, `element`, `head`; a unit cube, a brick, the mesh of both."""
     return SimpleNamespace(block=block, nodes=nodes, element=element, head=head, CUBE=CUBE, BRICK=BRICK, MESH=MESH)
 
 

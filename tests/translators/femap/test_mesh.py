@@ -205,8 +205,9 @@ def test_numbers_are_exact(neu, load) -> None:
 
 def test_version_numbers(neu, load) -> None:
     """10.3 is later than 9.31: its properties have counts of outline points."""
-    body = neu.block(402, "1,110,1,25,1,0,", "a", "0,0,0,0,", "0,", "0,", "2,", "0.,0.,1,", "0.,1.,1,", "1,", "0.,0.,1,",
-                     "2,110,1,25,1,0,", "b", "0,0,0,0,", "10,", "1,1,1,1,1,1,1,1,", "2,2,", "0,", "0,", "0,")  # fmt: skip
+    first = ["1,110,1,25,1,0,", "a", "0,0,0,0,", "0,", "0,", "2,", "0.,0.,1,", "0.,1.,1,", "1,", "0.,0.,1,"]
+    second = ["2,110,1,25,1,0,", "b", "0,0,0,0,", "10,", "1,1,1,1,1,1,1,1,", "2,2,", "0,", "0,", "0,"]
+    body = neu.block(402, *first, *second)
     model = load(neu.MESH + body, "10.3")
     assert {n: part.name for n, part in model.parts.items()} == {1: "a", 2: "b"}
     assert model.sections[2].native["laminate"] == [1] * 8 + [2] * 2
