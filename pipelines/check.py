@@ -16,19 +16,20 @@ from zrno.translators.text import Fault
 from zrno.translators.yaml_marks import Place
 
 
-def check(paths: Sequence[Path]) -> list[dict[str, Any]]:
+def check(paths: Sequence[Path], *, allow_outside: bool = False) -> list[dict[str, Any]]:
     """A row a file: {file, kind, faults, warnings}; a fault is {path, line, column, message, text, expected}.
 
     A .mcm that is checked together with a .dat is read as half of a coupled pair. The decks of a scene are checked with
     it, also those that it makes; nothing is written. What is sound and cannot be run yet is a warning.
+    allow_outside: files that a deck includes may stand outside its folder.
     """
     suffixes = {path.suffix.lower() for path in paths}
     rows = []
     for path in paths:
         if path.suffix.lower() in SUFFIXES:
-            rows += _scene(path)
+            rows += _scene(path, allow_outside)
         else:
-            rows.append(_file(path, paired={".mcm", ".dat"} <= suffixes))
+            rows.append(_file(path, allow_outside, paired={".mcm", ".dat"} <= suffixes))
     return rows
 
 
@@ -47,15 +48,15 @@ def fault_lines(rows: Sequence[dict[str, Any]]) -> list[str]:
     return [str(Fault(**fault)) for row in rows for fault in row["faults"]]
 
 
-def _file(path: Path, *, paired: bool) -> dict[str, Any]:
+def _file(path: Path, allow_outside: bool, *, paired: bool) -> dict[str, Any]:
     try:
-        model = read(path, paired=paired)
+        model = read(path, paired=paired, allow_outside=allow_outside)
     except InputError as error:
         return _row(path, path.suffix.lstrip("."), error.faults)
     return _sound(path, model)
 
 
-def _scene(path: Path) -> list[dict[str, Any]]:
+def _scene(path: Path, allow_outside: bool) -> list[dict[str, Any]]:
     """The scene, the decks that it makes (from a folder of temporary files), and those that are there."""
     try:
         scene = load_scene(path)
@@ -68,9 +69,9 @@ def _scene(path: Path) -> list[dict[str, Any]]:
     except InputError as error:
         row["warnings"] += map(_not_yet, error.faults)
     made = {path.parent / mesh.target for mesh in scene.meshes}
-    rows = [row, *(_file(deck, paired=len(decks) == 2) for deck in decks if deck not in made)]
+    rows = [row, *(_file(deck, allow_outside, paired=len(decks) == 2) for deck in decks if deck not in made)]
     try:
-        with drafts(scene, path.parent, publishing=False) as found:
+        with drafts(scene, path.parent, publishing=False, allow_outside=allow_outside) as found:
             for draft in found:
                 model = draft.read()
                 rows.append(_sound(draft.target, model, draft.places(model)))

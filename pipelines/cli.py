@@ -26,6 +26,7 @@ app.add_typer(samples_app, name="samples")
 Json = Annotated[bool, typer.Option("--json", help="Print exactly one JSON object on stdout.")]
 Verbose = Annotated[bool, typer.Option("-v", "--verbose", help="Show more, and where an error came from.")]
 Quiet = Annotated[bool, typer.Option("-q", "--quiet", help="Print results and errors only.")]
+AllowOutside = Annotated[bool, typer.Option("--allow-outside", help="Includes may leave the folder of their deck.")]
 Directory = Annotated[Path, typer.Argument(metavar="DIR", help="A result folder.")]
 
 
@@ -91,10 +92,7 @@ def convert(
     settings: Annotated[Path | None, typer.Option(metavar="FILE.yaml", help="What a mesh does not carry.")] = None,
     dialect: Annotated[Dialect | None, typer.Option(help="Of the .mcm written.")] = None,
     strict: Annotated[bool, typer.Option("--strict", help="What the target cannot say is an error.")] = False,
-    allow_outside: Annotated[
-        bool,
-        typer.Option("--allow-outside", help="Includes may leave the deck's folders (no format read yet has any)."),
-    ] = False,
+    allow_outside: AllowOutside = False,
     help_settings: Annotated[
         bool, typer.Option("--help-settings", callback=_help_settings, is_eager=True, help="List all settings.")
     ] = False,
@@ -119,6 +117,7 @@ def convert(
             settings=load_settings(settings) if settings else None,
             dialect=dialect.value if dialect else None,
             strict=strict,
+            allow_outside=allow_outside,
         )
         out.note(report_text(result))
         out.answer(result, str(paths[-1]))
@@ -127,6 +126,7 @@ def convert(
 @app.command()
 def info(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="A mesh or a deck.")],
+    allow_outside: AllowOutside = False,
     json: Json = False,
     verbose: Verbose = False,
     quiet: Quiet = False,
@@ -136,13 +136,14 @@ def info(
         from zrno.pipelines.info import info as run_info
         from zrno.pipelines.info import info_text
 
-        summary = run_info(file)
+        summary = run_info(file, allow_outside=allow_outside)
         out.answer(summary, info_text(file, summary))
 
 
 @app.command()
 def check(
     files: Annotated[list[Path], typer.Argument(metavar="FILE...", help="Meshes, decks, scenes.")],
+    allow_outside: AllowOutside = False,
     json: Json = False,
     verbose: Verbose = False,
     quiet: Quiet = False,
@@ -152,7 +153,7 @@ def check(
         from zrno.pipelines.check import check as run_check
         from zrno.pipelines.check import check_text, fault_lines
 
-        rows = run_check(files)
+        rows = run_check(files, allow_outside=allow_outside)
         faults = fault_lines(rows)
         if faults:
             print("\n".join(faults), file=sys.stderr)
@@ -170,6 +171,7 @@ def run(
     options: Annotated[
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Override one value; repeatable, see below.")
     ] = None,
+    allow_outside: AllowOutside = False,
     json: Json = False,
     verbose: Verbose = False,
     quiet: Quiet = False,
@@ -200,6 +202,7 @@ def run(
             options=parse(options or ()),
             quiet=quiet,
             progress=out.progress,
+            allow_outside=allow_outside,
             known=out.known,
         )
         text = f"{result['status']}: {result['steps']} steps to t = {result['time']:g}, {result['output']}"

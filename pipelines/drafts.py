@@ -61,10 +61,11 @@ class Draft:
 
 
 @contextmanager
-def drafts(scene: Scene, folder: Path, *, publishing: bool) -> Iterator[list[Draft]]:
+def drafts(scene: Scene, folder: Path, *, publishing: bool, allow_outside: bool = False) -> Iterator[list[Draft]]:
     """Every deck that a scene makes, for the time of the block; what is not published then is gone after it.
 
-    folder: of the scene; publishing: whether they are to be published, and so lie on the same disk as their targets.
+    folder: of the scene; publishing: whether they are to be published, and so lie on the same disk as their targets;
+    allow_outside: see `convert`.
     Raises InputError with the faults of all meshes, up to 20.
     """
     with ExitStack() as stack:
@@ -85,6 +86,7 @@ def drafts(scene: Scene, folder: Path, *, publishing: bool) -> Iterator[list[Dra
                     settings=settings,
                     numbers=mesh.numbers,
                     dialect=mesh.dialect,
+                    allow_outside=allow_outside,
                 )
             except InputError as error:
                 faults += error.faults

@@ -9,9 +9,13 @@ from typing import Any
 from zrno.translators import read
 
 
-def info(path: Path) -> dict[str, Any]:
-    """The keys of `zrno info --json`. A particle deck of a coupled run is read as such, with a warning."""
-    model = read(path, paired=True)
+def info(path: Path, *, allow_outside: bool = False) -> dict[str, Any]:
+    """The keys of `zrno info --json`. A particle deck of a coupled run is read as such, with a warning; a piece of a
+    deck as what it is.
+
+    allow_outside: files that it includes may stand outside its folder.
+    """
+    model = read(path, paired=True, allow_outside=allow_outside, partial=True)
     summary = model.summary()
     if model.velocity_overrun:
         count = model.velocity_overrun

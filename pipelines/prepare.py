@@ -50,6 +50,7 @@ def prepare(
     *,
     threads: int | None = None,
     resume: bool = False,
+    allow_outside: bool = False,
 ) -> Prepared:
     """Read the inputs of a run and build its solver; then make the result folder, and put decks in their places.
 
@@ -60,7 +61,8 @@ def prepare(
     if directory.exists() and not directory.is_dir():
         raise InputError([Fault(str(directory), 1, 1, "not a folder", expected="a folder for the results")])
     made: Sequence[Draft]
-    with drafts(scene, paths[0].parent, publishing=True) if scene else nullcontext(()) as made:
+    making = drafts(scene, paths[0].parent, publishing=True, allow_outside=allow_outside) if scene else nullcontext(())
+    with making as made:
         deck = decks[0]
         draft = next((draft for draft in made if draft.target == deck), None)
         model = draft.read() if draft else read(deck)

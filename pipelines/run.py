@@ -46,6 +46,7 @@ def run(
     options: Mapping[str, Any] | None = None,
     quiet: bool = True,
     progress: bool = False,
+    allow_outside: bool = False,
     known: dict[str, Any] | None = None,
 ) -> dict[str, Any]:
     """Run one particle deck or a scene; returns the keys of `zrno run --json`.
@@ -54,7 +55,8 @@ def run(
     one for few particles. until: stop at this simulated time. resume: go on from the newest checkpoint of the folder,
     if it has one. options: by dotted key, as `--set` takes them (`compat=original`, scene keys, settings). quiet: no
     warnings on stderr at the end; progress: a bar there. known: takes the
-    same keys as they become known, also of a run that fails.
+    same keys as they become known, also of a run that fails. allow_outside: files that a scene's meshes include may
+    stand outside their folders.
 
     Raises InputError for bad input (nothing is written then), `Diverged` or `RunFailed` for a run that cannot go on,
     KeyboardInterrupt after the checkpoint of an interrupted one.
@@ -66,7 +68,7 @@ def run(
     directory = Path(output) if output is not None else Path(f"{paths[0].stem}_results")
     known = {} if known is None else known
     known |= {"steps": 0, "time": 0.0}
-    ready = prepare(paths, chosen, directory, threads=threads, resume=resume)
+    ready = prepare(paths, chosen, directory, threads=threads, resume=resume, allow_outside=allow_outside)
     scene, deck, model, solver, state = ready.scene, ready.deck, ready.model, ready.solver, ready.state
 
     from zrno.solvers.jit import compile_seconds

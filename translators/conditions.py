@@ -92,7 +92,10 @@ class CoordinateSystem:
 
 @dataclass(slots=True)
 class Constraint:
-    """Degrees of freedom held at zero. nodes: (n,); dofs: (n, 6) bool; set: the node set that it was given by."""
+    """Degrees of freedom held at zero. nodes: (n,); dofs: (n, 6) bool; set: the node set that it was given by.
+
+    birth, death: when it holds; None: from the start, for ever.
+    """
 
     nodes: Ints
     dofs: NDArray[np.bool_]
@@ -101,6 +104,8 @@ class Constraint:
     set: int | None = None
     system: int = 0
     source: Source | None = None
+    birth: float | None = None
+    death: float | None = None
 
 
 @dataclass(slots=True)
@@ -189,7 +194,7 @@ class Contact:
     """Contact between surfaces.
 
     kind: the format's own name of it; a, b: slave and master, what and which: ("part" | "part set" | "segment set" |
-    "node set" | "all", id); static, kinetic: friction.
+    "node set" | "shell set" | "all" | "other parts" | "other", id); static, kinetic: friction.
     """
 
     kind: str

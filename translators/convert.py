@@ -9,7 +9,7 @@ import numpy as np
 
 from zrno.translators import held
 from zrno.translators.law_maps import as_known
-from zrno.translators.materials import materials_of, settings_of
+from zrno.translators.materials import ANY, materials_of, settings_of
 from zrno.translators.mcm.cards import LAWS as MCM_LAWS
 from zrno.translators.model import PARTICLE_FAMILIES, Eos, Material, Model, Part, ParticleControl, Particles
 from zrno.translators.particles import Filling, chosen_parts, copy_nodes, fill, on_shells, own_particles
@@ -43,7 +43,7 @@ def to_particles(
     report = Report()
     asked = None if parts is None else [part_number(model, part) for part in parts]
     chosen = _parts(model, asked, particles)
-    materials = materials_of(model, chosen, settings)
+    materials = materials_of(model, chosen, settings, report)
     chosen = _with_laws(model, chosen, materials, report)
     filling = _filled(model, settings, particles, spacing, chosen)
     dimension = 2 if model.dimension == 2 else 3
@@ -66,7 +66,8 @@ def to_particles(
         own = mass[number == k]
         h[k - 1] = _smoothing_length(model, part, filling, settings)
         target.materials[k] = _material(model.parts[part], k, materials[part], own, h[k - 1], settings, target)
-    if any(np.ptp(mass[number == k]) > 1e-9 * mass[number == k].max() for k in numbers.values()):
+    uneven = any(np.ptp(mass[number == k]) > 1e-9 * mass[number == k].max() for k in numbers.values())
+    if uneven or any(not _fits(material.mass) for material in target.materials.values()):
         target.particles.mass = mass
     target.particle_control = _control(model, target, settings, dimension, report)
     _report_lost(model, chosen, filling, report)
@@ -157,6 +158,11 @@ def _masses(filling: Filling, density: Any) -> Any:
     return mass
 
 
+def _fits(mass: float) -> bool:
+    """Whether the deck's ten columns hold a part's mass to 1e-9; else its particles' masses are written, in twenty."""
+    return abs(float(real_text(mass, 10)[0]) - mass) <= 1e-9 * mass
+
+
 def _smoothing_length(model: Model, part: int, filling: Filling, settings: Settings) -> float:
     """What the settings say, else the part's section, else the settings' default; a length that the deck holds."""
     section = model.sections.get(model.parts[part].section or 0)
@@ -219,7 +225,7 @@ def _control(model: Model, target: Model, settings: Settings, dimension: int, re
         control.dialect = "2019-10"
     if control.contact:
         for material in target.materials.values():
-            law = laws.get(material.name) or laws.get(material.name.removeprefix("part "))
+            law = laws.get(material.name) or laws.get(material.name.removeprefix("part ")) or laws.get(ANY)
             if law is None:
                 expected = f"contact_laws: {{{material.name}: {{strength: K, exponent: n}}}}"
                 settings.fault(("contact",), "a part has no contact law", material.name, expected)

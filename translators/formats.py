@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -31,9 +32,9 @@ FORMATS = (
     Format("mcm", (".mcm",), "zrno.translators.mcm", "zrno.translators.mcm"),
     Format("msh", (".msh",), "zrno.translators.gmsh.read", "zrno.translators.gmsh.write"),
     Format("geo", (".geo",), "zrno.translators.gmsh.geo"),
-    Format("lsdyna", (".k", ".key", ".dyn"), missing="LS-DYNA decks are not read yet"),
+    Format("lsdyna", (".k", ".key", ".dyn"), "zrno.translators.lsdyna", "zrno.translators.lsdyna"),
     Format("neu", (".neu", ".fno"), "zrno.translators.neu", "zrno.translators.femap"),
-    Format("pak", (".dat",), missing="PAK decks are not read yet"),
+    Format("pak", (".dat",), "zrno.translators.pak", "zrno.translators.pak"),
     Format("vtu", (".vtu",), "zrno.translators.meshio_bridge", "zrno.translators.meshio_bridge"),
 )
 _MESHIO = Format("meshio", (), "zrno.translators.meshio_bridge")
@@ -49,20 +50,29 @@ def find(path: Path | str) -> Format:
         # a gmsh mesh under another name, say .neu
         if head.startswith(b"$MeshFormat") and by_extension.name != "msh":
             return next(f for f in FORMATS if f.name == "msh")
+        # pieces of keyword decks have other extensions too: .inc, .asc
+        if by_extension is _MESHIO and re.search(rb"^\*KEYWORD\b", head, re.MULTILINE):
+            return next(f for f in FORMATS if f.name == "lsdyna")
     return by_extension
 
 
-def read(path: Path | str, *, paired: bool = False) -> Model:
+def read(path: Path | str, *, paired: bool = False, allow_outside: bool = False, partial: bool = False) -> Model:
     """Read a mesh or a deck, whatever its format.
 
-    paired: a particle deck belongs to a coupled run (see `mcm.read`). Raises InputError with every fault, up to 20.
+    paired: a particle deck belongs to a coupled run (see `mcm.read`). allow_outside: files that the deck includes may
+    stand outside its folder. partial: what is missing of a deck of several files is no fault, and stands in
+    `Model.incomplete`. Raises InputError with every fault, up to 20.
     """
     kind = find(path)
     if not kind.reader:
         read_bytes(path)  # a missing or an empty file is said first
         raise InputError([Fault(str(path), 1, 1, kind.missing, expected="one of " + ", ".join(_readable()))])
     module = importlib.import_module(kind.reader)
-    model: Model = module.read(path, paired=paired) if kind.name == "mcm" else module.read(path)
+    options: dict[str, bool] = {
+        "mcm": {"paired": paired},
+        "lsdyna": {"allow_outside": allow_outside, "partial": partial},
+    }.get(kind.name, {})
+    model: Model = module.read(path, **options)
     return model
 
 
@@ -71,6 +81,8 @@ def write(model: Model, path: Path | str, **options: Any) -> Report:
 
     Returns what the target cannot say. Raises ValueError for a format that is not written, or a model it cannot hold.
     """
+    if model.incomplete:
+        raise ValueError("nothing can be made of a model that lacks what it names: " + "; ".join(model.incomplete[:5]))
     kind = next((f for f in FORMATS if Path(path).suffix.lower() in f.extensions), None)
     if kind is None or not kind.writer:
         targets = ", ".join(e for f in FORMATS if f.writer for e in f.extensions)

@@ -21,7 +21,7 @@ def fixed_dofs(model: Model, report: Report | None = None) -> NDArray[np.bool_]:
     fixed = np.zeros((len(model.xyz), 6), bool) if model.fixed is None else model.fixed.copy()
     local = 0
     for constraint in model.constraints:
-        if not _global(model, constraint.system):
+        if not is_global(model, constraint.system):
             local += len(constraint.nodes)
             continue
         np.logical_or.at(fixed, constraint.nodes, constraint.dofs)
@@ -30,7 +30,7 @@ def fixed_dofs(model: Model, report: Report | None = None) -> NDArray[np.bool_]:
     return fixed
 
 
-def _global(model: Model, system: int) -> bool:
+def is_global(model: Model, system: int) -> bool:
     """Whether a local system is along the global axes."""
     found = model.systems.get(system)
     return system == 0 or (

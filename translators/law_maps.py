@@ -49,7 +49,7 @@ def as_known(
     left = [
         f"{key} = {value:g}"
         for key, value in material.parameters.items()
-        if key not in takes and value != defaults.get(key)
+        if key not in takes and value != defaults.get(key, 0.0)
     ]
     report.approximate("material parameters", len(left), f"{name}: the deck's law has no {', '.join(left)}")
     return replace(material, parameters={key: material.parameters[key] for key in takes if key in material.parameters})
@@ -87,21 +87,21 @@ def hardening_table(material: Material, curves: Mapping[int, Curve]) -> Floats |
 
 def _straight_hardening(material: Material, curves: Mapping[int, Curve]) -> tuple[Material, str]:
     """Yield stress and tangent modulus of a hardening table: its own where it is one straight line, else the line of
-    least squares from its first point."""
+    least squares, from the first point where that is a stress at all."""
     table = hardening_table(material, curves) if material.law == "von_mises" else None
     if table is None or not len(table):
         return material, ""
-    strain, stress = table[:, 0] - table[0, 0], table[:, 1] - table[0, 1]
-    slope = float(strain @ stress / (strain @ strain)) if strain.any() else 0.0
+    strain, stress = table[:, 0] - table[0, 0], table[:, 1]
+    first = float(stress[0])
+    slope = float(strain @ (stress - first) / (strain @ strain)) if strain.any() else 0.0
+    if first <= 0 and strain.any():
+        slope, first = (float(value) for value in np.polyfit(strain, stress, 1))
     slope = max(slope, 0.0)
     E = material.parameters["E"]
-    parameters = material.parameters | {
-        "yield_stress": float(table[0, 1]),
-        "tangent_modulus": E * slope / (E + slope),
-    }
+    parameters = material.parameters | {"yield_stress": first, "tangent_modulus": E * slope / (E + slope)}
     straight = replace(material, parameters=parameters, tables={}, curves={})
-    worst = float(np.abs(stress - slope * strain).max())
-    if worst <= 1e-9 * float(np.abs(table[:, 1]).max()):
+    worst = float(np.abs(stress - first - slope * strain).max())
+    if worst <= 1e-9 * float(np.abs(stress).max()):
         return straight, ""
     return straight, f"a table of {len(table)} points as a straight line, off by up to {worst:.4g} in stress"
 

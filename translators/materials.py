@@ -11,24 +11,32 @@ import numpy as np
 from zrno.translators.law_maps import with_defaults
 from zrno.translators.laws import LAWS
 from zrno.translators.model import Material, Model
+from zrno.translators.report import Report
 from zrno.translators.settings import Settings
+
+ANY = "*"  # in place of a part's name: all parts that have no entry of their own
 
 
 def settings_of(settings: Settings, model: Model, part: int) -> tuple[str, dict[str, Any] | None]:
-    """The name by which the settings know a part (its name, or its number), and their entry of its material."""
+    """The name by which the settings know a part (its name, its number, or * for any), and their entry of it."""
     entries = settings["materials"]
-    for name in (model.parts[part].name, str(part)):
+    for name in (model.parts[part].name, str(part), ANY):
         if name in entries:
             return name, entries[name]
     return model.parts[part].name or str(part), None
 
 
-def materials_of(model: Model, parts: Sequence[int], settings: Settings) -> dict[int, Material]:
-    """The material of each part. Raises InputError with all that is missing or wrong in the settings."""
+def materials_of(
+    model: Model, parts: Sequence[int], settings: Settings, report: Report, *, massless: bool = False
+) -> dict[int, Material]:
+    """The material of each part; what the settings give and a law does not take is a remark of the report.
+
+    massless: a density may be missing. Raises InputError with all that is missing or wrong in the settings.
+    """
     names = {key for number, part in model.parts.items() for key in (part.name, str(number)) if key}
     for group in ("materials", "contact_laws"):
         for name in settings[group]:
-            if name not in names:
+            if name not in names and name != ANY:
                 expected = "one of " + ", ".join(sorted(names)[:20])
                 settings.fault((group, name), f"{group} of a part that the mesh does not have", name, expected)
     found: dict[int, Material] = {}
@@ -41,7 +49,7 @@ def materials_of(model: Model, parts: Sequence[int], settings: Settings) -> dict
             )
             continue
         material = _merged(own, entry or {}, part, name)
-        _check(settings, name, material)
+        _check(settings, name, material, report, massless=massless)
         found[part] = with_defaults(material)
     settings.stop()
     return found
@@ -59,24 +67,24 @@ def _merged(own: Material | None, entry: dict[str, Any], part: int, name: str) -
     return replace(own, density=density, parameters=own.parameters | given, tables=tables)
 
 
-def _check(settings: Settings, name: str, material: Material) -> None:
-    """What a law needs and has not, and what the settings give that it has not, at the settings' keys."""
+def _check(settings: Settings, name: str, material: Material, report: Report, *, massless: bool) -> None:
+    """What a law needs and has not, at the settings' keys, and what the settings give that it does not take."""
     law = LAWS.get(material.law)
     if law is None:
         message = f"the mesh's law of {name} is not known here"
         settings.fault(("materials", name), message, material.law or "none", "law: ...")
         return
     p = material.parameters
-    if material.density <= 0:
+    if material.density <= 0 and not massless:
         settings.fault(("materials", name), f"materials.{name}.density is missing", name, "a value of density")
     for key, default in law.parameters.items():
         if default is None and key not in p and not (key == "yield_stress" and instead_of_yield(material)):
             settings.fault(("materials", name), f"materials.{name}.{key} is missing", name, f"a value of {key}")
     given = {key for key, value in settings["materials"].get(name, {}).items() if value is not None}
     others = {key for other in LAWS.values() for key in other.parameters} - set(law.parameters)
-    for key in sorted(given & others):
-        expected = "one of " + ", ".join(law.parameters)
-        settings.fault(("materials", name, key), f"the law {material.law} has no {key}", key, expected)
+    left = ", ".join(sorted(given & others))
+    if left:  # not wrong: an override may have exchanged the law
+        report.notes.append(f"materials.{name}: the law {material.law} does not take {left}")
     if material.law == "von_mises":
         for key, bad, message, wanted in (
             ("beta", p.get("beta", 1.0) > 1, "too large", "0 to 1"),

@@ -163,6 +163,7 @@ class Model:
     dimension: int = 3  # of the space: 2 where all is flat (constant z) and no volume or shell in space is meant
     node_ids: Ints = field(default_factory=lambda: np.empty(0, np.int64))
     xyz: Floats = field(default_factory=lambda: np.empty((0, 3)))
+    node_data: dict[str, NDArray[Any]] = field(default_factory=dict)  # (n, ...) each, by the source format's own names
     blocks: list[ElementBlock] = field(default_factory=list)
     parts: dict[int, Part] = field(default_factory=dict)
     sections: dict[int, Section] = field(default_factory=dict)
@@ -189,6 +190,8 @@ class Model:
     velocity_overrun: int = 0  # velocity cards past the last particle: a coupled deck's finite element nodes
     includes: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
+    incomplete: list[str] = field(default_factory=list)  # what is named but not there: no target can be made of it
+    native: dict[str, Any] = field(default_factory=dict)  # by format: what only its own writer understands
 
     def element_counts(self) -> dict[str, int]:
         """Elements of each kind, in all blocks; particles of a mesh are not among them."""

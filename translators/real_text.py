@@ -26,9 +26,9 @@ def real_text(value: float, width: int, *, implied: int = 0) -> tuple[str, bool]
         rounded = f"{value:.{count - 1}e}"
         if not math.isfinite(float(rounded)):  # rounded up past the largest double
             continue
-        for text in _spellings(*_decimal(rounded), implied):
-            if len(text) <= width:
-                return text, False
+        if any(len(text) <= width for text in _spellings(*_decimal(rounded), implied)):
+            # as that number itself is written: a deck that is read and written again is the same
+            return real_text(float(rounded), width, implied=implied)[0], False
     raise ValueError(f"{value!r} does not fit {width} columns")
 
 

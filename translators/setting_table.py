@@ -62,7 +62,7 @@ TABLE: tuple[Setting | Group, ...] = (
             Setting("strength", number(0.0), 0.0, "K, pressure / density^2", "contact card K"),
             Setting("exponent", number(0.0), 4.0, "n", "contact card n"),
         ),
-        "of contact: potential, by part",
+        'of contact: potential, by part, "*": any other',
         named=True,
     ),
     Group(
@@ -101,7 +101,7 @@ TABLE: tuple[Setting | Group, ...] = (
             Setting("thickness", number(0.0, above=True, optional=True), None, "of shells; null: the mesh's own"),
             Setting("area", number(0.0, above=True, optional=True), None, "of trusses and beams"),
         ),
-        "by part: its name in the mesh, or its number; what is null is the mesh's own",
+        'by part: its name or number, "*": any other; what is null is the mesh\'s own',
         named=True,
     ),
     Group(

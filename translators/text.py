@@ -9,16 +9,20 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from zrno.translators.faults import MAX_FAULTS as MAX_FAULTS
+from zrno.translators.faults import Fault as Fault
+from zrno.translators.faults import Faults as Faults
+from zrno.translators.faults import InputError as InputError
+
 Ints = NDArray[np.int64]
 
-MAX_FAULTS = 20
 _CHUNK = 20_000  # cards looked at together: the cut-out columns stay in the cache
 _FEW = 100_000  # numbers: below this Python parses them before the jitted kernels are loaded
 _LINES_AT_A_TIME = 1 << 23  # bytes searched for line ends
@@ -36,54 +40,6 @@ def _table(characters: bytes) -> NDArray[np.bool_]:
 
 
 _DIGITS_OR_BLANK = _table(b"0123456789 ")
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Fault:
-    """One thing wrong in a file. line, column: from 1; text: the offending text; expected: what should stand there."""
-
-    path: str
-    line: int
-    column: int
-    message: str
-    text: str = ""
-    expected: str = ""
-
-    def __str__(self) -> str:
-        said = f"{self.path}:{self.line}:{self.column}: error: {self.message}"
-        said += f" ({self.text})" if self.text else ""
-        return said + (f"; expected {self.expected}" if self.expected else "")
-
-
-class InputError(Exception):
-    """A file that cannot be used. Its text is one line a fault."""
-
-    def __init__(self, faults: Sequence[Fault]) -> None:
-        self.faults = list(faults)
-        super().__init__("\n".join(str(fault) for fault in self.faults))
-
-
-@dataclass(slots=True)
-class Faults:
-    """Collects the faults of one file, so that a reader can go on after the first."""
-
-    path: str
-    found: list[Fault] = field(default_factory=list)
-
-    def add(self, line: int, column: int, message: str, text: str = "", expected: str = "") -> None:
-        """Note a fault; raises InputError at the twentieth."""
-        self.found.append(Fault(self.path, line, column, message, text, expected))
-        if len(self.found) >= MAX_FAULTS:
-            self.stop()
-
-    def add_at(self, place: tuple[int, int], message: str, text: str = "", expected: str = "") -> None:
-        """Note a fault at (line, column)."""
-        self.add(*place, message, text, expected)
-
-    def stop(self) -> None:
-        """Raise InputError when there are faults."""
-        if self.found:
-            raise InputError(sorted(set(self.found)))
 
 
 def read_bytes(path: Path | str) -> bytes:
@@ -181,14 +137,28 @@ class Layout:
                 column += width
         self.width = column
 
+    def only(self, name: str) -> Layout:
+        """A layout of one of the fields."""
+        f = self.fields[name]
+        kind = f"{f.kind}{f.end - f.start}" + (f".{f.implied}" if f.implied else "")
+        return Layout(f"a{f.start},{kind}", f"gap {name}") if f.start else Layout(kind, name)
+
 
 class Block:
-    """Cards of one layout. values: an array a numeric field, shape (n,), by name (int64 or float64)."""
+    """Cards of one layout. values: an array a numeric field, shape (n,), by name (int64 or float64).
 
-    def __init__(self, cards: Cards, layout: Layout, first: int, count: int) -> None:
+    step: every how manieth card of the deck is one of them; quiet: no faults are noted, what is no number is 0.
+    """
+
+    def __init__(
+        self, cards: Cards, layout: Layout, first: int, count: int, *, step: int = 1, quiet: bool = False
+    ) -> None:
         self.layout = layout
         self._cards = cards
         self._first = first
+        self._count = count
+        self._step = step
+        self._quiet = quiet
         self._faulty: set[tuple[int, str]] = set()
         numeric = [f for f in layout.fields.values() if f.kind != "a"]
         if count * len(numeric) < _FEW:
@@ -196,7 +166,7 @@ class Block:
             return
         from zrno.translators import scan
 
-        spans = cards.spans(first, first + count)
+        spans = cards.spans(first, first + count * step, step)
         fields = [(f.start, f.end, -1 if f.kind == "i" else f.implied) for f in numeric]
         arrays, care = scan.fixed(*spans, fields)
         self.values = {f.name: array for f, array in zip(numeric, arrays, strict=True)}
@@ -212,25 +182,39 @@ class Block:
 
     def line(self, i: int) -> int:
         """Line of card i in its file, from 1."""
-        return self._cards.line(self._first + i)
+        return self._cards.line(self._first + i * self._step)
+
+    def whole(self, i: int = 0) -> str:
+        """The line of card i."""
+        return self._cards.text(self._first + i * self._step)
+
+    def letters(self, column: int) -> NDArray[np.uint8]:
+        """The byte in a column (from 0) of each card: (n,); a blank past its end."""
+        data, starts, ends = self._cards.spans(self._first, self._first + self._count * self._step, self._step)
+        at = starts + column
+        return np.where(at < ends, data[np.minimum(at, len(data) - 1)], np.uint8(_BLANK))
 
     def text(self, name: str, i: int = 0) -> str:
         """The text of a field of card i, without the blanks around it."""
         f = self.layout.fields[name]
-        return self._cards.text(self._first + i)[f.start : f.end].strip()
+        return self.whole(i)[f.start : f.end].strip()
 
     def place(self, name: str, i: int = 0) -> tuple[int, int]:
         """Line and column of what a field of card i says; of its first column where it is blank."""
         f = self.layout.fields[name]
-        raw = self._cards.text(self._first + i)[f.start : f.end]
+        raw = self.whole(i)[f.start : f.end]
         return self.line(i), f.start + 1 + (len(raw) - len(raw.lstrip()) if raw.strip() else 0)
 
     def fault(self, i: int, name: str, message: str, expected: str = "") -> None:
         """Note a fault in a field of card i, unless it has one: what is no number is not also out of range."""
-        if (i, name) in self._faulty:
+        if self._quiet or (i, name) in self._faulty:
             return
         self._faulty.add((i, name))
         self._cards.faults.add(*self.place(name, i), message, self.text(name, i) or "blank", expected)
+
+    def stop(self) -> None:
+        """Raise InputError when there are faults in the file so far."""
+        self._cards.faults.stop()
 
     def sound(self, name: str, i: int = 0) -> bool:
         """Whether a field of card i has no fault so far."""
@@ -298,20 +282,25 @@ class Card:
 class Cards:
     """The cards of a deck in order: the lines of a text file without its comments.
 
-    comments: bytes that make a line a comment when they stand in its first column. An empty line is a card.
+    comments: bytes that make a line a comment when they stand in its first column, and in its second one of `second`
+    where such are named (past a line's end stand blanks). An empty line is a card.
     """
 
-    def __init__(self, path: Path | str, data: bytes, *, comments: bytes) -> None:
+    def __init__(self, path: Path | str, data: bytes, *, comments: bytes, second: bytes = b"") -> None:
         self.faults = Faults(str(path))
         self._data = data
         self._bytes = np.frombuffer(data, np.uint8)
         starts, ends = line_spans(data)
         self._lines = len(starts)
         first = self._bytes[np.minimum(starts, len(data) - 1)]
-        keep = np.flatnonzero(~_table(comments)[first] | (starts == ends))
-        self._starts = starts[keep]
-        self._ends = ends[keep]
-        self._numbers = keep + 1
+        marked = _table(comments)[first] & (starts < ends)
+        if second:
+            marked &= _table(second)[self._bytes[np.minimum(starts + 1, len(data) - 1)]] | (ends - starts == 1)
+        self._numbers: Ints | None = None  # lines of the cards, from 1, where there are comments
+        if marked.any():
+            keep = np.flatnonzero(~marked)
+            starts, ends, self._numbers = starts[keep], ends[keep], keep + 1
+        self._starts, self._ends = starts, ends
         self._next = 0
 
     @property
@@ -321,20 +310,26 @@ class Cards:
 
     def line(self, card: int) -> int:
         """Line of a card (from 0) in its file, from 1."""
-        return int(self._numbers[card]) if card < len(self._numbers) else self._lines + 1
+        if card >= len(self._starts):
+            return self._lines + 1
+        return card + 1 if self._numbers is None else int(self._numbers[card])
 
     @property
     def next_line(self) -> int:
         """Line of the next card."""
         return self.line(self._next)
 
+    def line_of(self, ahead: int) -> int:
+        """Line of the card that comes after `ahead` others."""
+        return self.line(self._next + ahead)
+
     def text(self, card: int) -> str:
         """A card's line."""
         return self._data[self._starts[card] : self._ends[card]].decode("latin-1")
 
-    def spans(self, first: int, last: int) -> tuple[NDArray[np.uint8], Ints, Ints]:
-        """All bytes of the file, and where the cards first..last (excluded) start and end in them."""
-        return self._bytes, self._starts[first:last], self._ends[first:last]
+    def spans(self, first: int, last: int, step: int = 1) -> tuple[NDArray[np.uint8], Ints, Ints]:
+        """All bytes of the file, and where the cards first..last (excluded; or every step-th) start and end in them."""
+        return self._bytes, self._starts[first:last:step], self._ends[first:last:step]
 
     def grid(self, first: int, last: int, width: int) -> NDArray[np.uint8]:
         """Bytes of the cards first..last (excluded), shape (n, width): cut, and filled with blanks."""
@@ -364,15 +359,35 @@ class Cards:
         """The next cards, at most `count`, without going past them."""
         return Block(self, layout, self._next, min(count, self.left))
 
+    def probe(self, layout: Layout, count: int, step: int = 1, skip: int = 0) -> Block:
+        """At most `count` of the next cards, every step-th after the first `skip`, without going past them.
+
+        Nothing is noted of faults.
+        """
+        there = max(-(-(self.left - skip) // step), 0)
+        return Block(self, layout, self._next + skip, min(count, there), step=step, quiet=True)
+
+    def lengths(self, count: int, step: int = 1, skip: int = 0) -> Ints:
+        """Bytes of the next `count` cards, or of every step-th, the first `skip` left out."""
+        _, starts, ends = self.spans(self._next + skip, self._next + skip + count * step, step)
+        return ends - starts
+
     def block(self, layout: Layout, count: int, what: str) -> Block:
         """The next `count` cards; raises InputError where the file ends before them."""
-        block = Block(self, layout, self._next, min(count, self.left))
-        if count > self.left:
-            number = f" {self.left + 1} of {count}" if count > 1 else ""
+        return self.blocks([layout], count, what)[0]
+
+    def blocks(self, layouts: Sequence[Layout], count: int, what: str) -> list[Block]:
+        """The next `count` groups of cards, a layout each card of a group; raises InputError where the file ends."""
+        cards = len(layouts)
+        whole = min(count, self.left // cards)
+        first = self._next
+        blocks = [Block(self, layout, first + k, whole, step=cards) for k, layout in enumerate(layouts)]
+        if count > whole:
+            number = f" {whole + 1} of {count}" if count > 1 else ""
             self.faults.add(self._lines + 1, 1, "the file ends here", expected=f"{what}{number}")
             self.faults.stop()
-        self._next += count
-        return block
+        self._next += count * cards
+        return blocks
 
     def card(self, layout: Layout, what: str) -> Card:
         """The next card; raises InputError where the file ends before it."""

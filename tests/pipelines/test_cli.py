@@ -110,6 +110,7 @@ def test_run_hands_its_options_on(capsys: pytest.CaptureFixture[str], stand_in: 
         "threads": 2,
         "until": 1.5,
         "resume": True,
+        "allow_outside": False,
         "options": {"compat": "original", "end_time": 1e-3},
         "quiet": True,
         "progress": False,

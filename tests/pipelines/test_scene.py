@@ -180,7 +180,6 @@ def test_faults_of_settings_keep_their_own_place(tmp_path: Path) -> None:
     [
         ("set: {materials: {plate: {E: -1}}}", "4:95: error: materials.plate.E is not what it should be (-1)"),
         ("set: {materials.plate.nu: 0.7}", "4:72: error: materials.plate.nu is too large (0.7)"),
-        ("set: {materials.pl: {E: 1, nu: 0.3}}", "4:87: error: materials.pl.density is missing (pl)"),
         ("set: {materials.plate: {EE: 1}}", "4:90: error: unknown key materials.plate.EE (EE)"),
         ("set: {end_time: {a: 1}}", "4:83: error: there is no end_time.a (1)"),
         ("set: {end_time.a: 1}", "4:72: error: there is no end_time.a (1)"),
@@ -289,7 +288,7 @@ def test_strict_writes_nothing_when_something_is_lost(tmp_path: Path) -> None:
 
 
 def test_several_meshes_become_one(tmp_path: Path) -> None:
-    from zrno.pipelines.merge import merge
+    from zrno.translators.merge import merge
 
     (tmp_path / "a.msh").write_text(MESH)
     one, two = read(tmp_path / "a.msh"), read(tmp_path / "a.msh")

@@ -109,7 +109,6 @@ def test_settings_that_do_not_fit_the_mesh(mesh: Model, change: dict, said: str)
         ({"left.yield_stress": 0}, "materials.left.yield_stress is not positive (0)"),
         ({"left.beta": 2}, "materials.left.beta is too large (2); expected 0 to 1"),
         ({"left.tangent_modulus": 2}, "materials.left.tangent_modulus is too large (2); expected less than E"),
-        ({"right.yield_stress": 1}, "the law elastic has no yield_stress (yield_stress); expected one of E, nu"),
         ({"right.law": "cap"}, "materials.right.K is missing (right); expected a value of K"),
     ],
 )
@@ -120,9 +119,27 @@ def test_materials_that_are_not_whole(mesh: Model, change: dict, said: str) -> N
     assert said in str(caught.value)
 
 
+def test_one_material_for_all_parts_that_have_none(mesh: Model) -> None:
+    steel = {"density": 7.8, "E": 200, "nu": 0.3}
+    given = {f"materials.*.{key}": value for key, value in steel.items()}
+    given |= {"materials.left.density": 1, "materials.left.E": 100, "materials.left.nu": 0.1}
+    given |= {"contact": "potential", "contact_laws.*.strength": 3}
+    model, _ = to_particles(mesh, load_settings(overrides=given))
+    left, right = model.materials.values()
+    assert (left.name, left.density, left.parameters["E"]) == ("left", 1, 100)
+    assert (right.name, right.density, right.parameters["E"]) == ("right", 7.8, 200)
+    assert model.particle_control.contact_laws == [(3.0, 4.0)] * 2
+
+
 def test_a_part_without_a_material(mesh: Model) -> None:
     with pytest.raises(InputError, match=r"a part has no material \(left\)"):
         to_particles(mesh, load_settings())
+
+
+def test_what_a_law_does_not_take_is_said(mesh: Model) -> None:
+    settings = load_settings(overrides={**MATERIALS, "materials.right.yield_stress": 1})
+    _, report = to_particles(mesh, settings)
+    assert "materials.right: the law elastic does not take yield_stress" in report.notes
 
 
 def shell(settings: dict | None = None) -> tuple[Model, Settings]:

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import unicodedata
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from zrno.translators.card_text import CardText
 from zrno.translators.mcm import cards as layouts
 from zrno.translators.mcm.laws import eos_rows, property_values
-from zrno.translators.model import Floats, Ints, Material, Model, ParticleControl, Particles
-from zrno.translators.real_text import real_text, real_texts
+from zrno.translators.model import Ints, Material, Model, ParticleControl, Particles
 from zrno.translators.report import Report
 from zrno.translators.text import Layout, write_atomically
 
@@ -44,7 +43,7 @@ class _Writer:
         self.control: ParticleControl = model.particle_control
         self.materials: list[Material] = list(model.materials.values())
         self.report = Report()
-        self._rounded: dict[str, int] = {}
+        self._text = CardText(self.report)
         self._check()
         self.dialect = self._choose_dialect(dialect)
         for kind, count in model.element_counts().items():
@@ -63,8 +62,7 @@ class _Writer:
         yield from self._particles()
         yield from self._extra()
         yield _joined([*self._history(), *self._velocities(), *self._after()])
-        for what, count in self._rounded.items():
-            self.report.approximate(what, count, "rounded to the deck's columns")
+        self._text.report_rounded()
 
     def _check(self) -> None:
         c, p = self.control, self.particles
@@ -111,46 +109,17 @@ class _Writer:
     # Text of cards
 
     def _line(self, layout: Layout, values: dict[str, Any], what: str) -> str:
-        """One card; a field without a value is 0, a text field blank."""
-        line = ""
-        for f in layout.fields.values():
-            value, width = values.get(f.name), f.end - f.start
-            if f.kind == "a":
-                text = (value or "")[:width].ljust(width)
-            elif f.kind == "i":
-                text = f"{value or 0:{width}d}"
-                if len(text) > width:
-                    raise ValueError(f"{what}: {f.name} = {value} does not fit {width} columns")
-            else:
-                text, exact = real_text(value or 0.0, width, implied=f.implied)
-                text = text.rjust(width)
-                if not exact:
-                    self._rounded[what] = self._rounded.get(what, 0) + 1
-            line += text
-        return line.rstrip()
+        return self._text.line(layout, values, what)
 
     @staticmethod
     def _heading(layout: Layout, title: str = "") -> list[str]:
         """A comment that names the fields, at most 80 columns."""
         return [f"$ {title}: {' '.join(layout.fields)}"[:80] if title else f"$ {' '.join(layout.fields)}"[:80]]
 
-    def _texts(self, values: Floats, width: int, what: str) -> list[str]:
-        texts, inexact = real_texts(values, width)
-        if inexact:
-            self._rounded[what] = self._rounded.get(what, 0) + inexact
-        return texts
-
-    def _ascii(self, text: str, width: int, what: str) -> str:
-        plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
-        plain = "".join(letter if letter.isprintable() else " " for letter in plain).strip()
-        if plain != text.strip() or len(plain) > width:
-            self.report.approximate(what, 1, f"ASCII, at most {width} characters")
-        return plain[:width].strip()
-
     # Sections, in the deck's order
 
     def _title(self) -> list[str]:
-        title = self._ascii(self.model.title, 78, "title")
+        title = self._text.ascii(self.model.title, 78, "title")
         if title[:1] in ("*", "$"):
             title = " " + title  # else the title would be a comment
         return [self._line(layouts.TITLE, {"title": title, "version": 2}, "title")]
@@ -215,7 +184,7 @@ class _Writer:
                 layouts.MATERIAL_PARTICLES, {"mass": m.mass, "h": m.h, "rho_min": m.rho_min, "rho_max": m.rho_max}, what
             )
             yield from self._heading(layouts.MATERIAL_TITLE)
-            name = self._ascii(m.name, 72, f"name of material {m.id}")
+            name = self._text.ascii(m.name, 72, f"name of material {m.id}")
             yield " " + name if name[:1] in ("*", "$") else name
             yield f"$ {layouts.PROPERTY_CARDS} cards, (card, value): {_positions(m.law)}"[:80]
             for row in property_values(m, self.report):
@@ -224,7 +193,7 @@ class _Writer:
                 )
             if eos is not None:
                 yield f"$ equation of state {eos.law}"
-                title = self._ascii(eos.name, 72, f"name of the equation of state of {what}")
+                title = self._text.ascii(eos.name, 72, f"name of the equation of state of {what}")
                 yield " " + title if title[:1] in ("*", "$") else title
                 for layout, values in eos_rows(eos):
                     yield from self._heading(layout)
@@ -240,7 +209,7 @@ class _Writer:
         line = "%8d%5d" + "%20s" * dimension + "%7d\n"
         for start in range(0, len(p), _CHUNK):
             part = slice(start, start + _CHUNK)
-            columns = [self._texts(p.x[part, axis], 20, "particle coordinates") for axis in range(dimension)]
+            columns = [self._text.texts(p.x[part, axis], 20, "particle coordinates") for axis in range(dimension)]
             bc, material = p.bc[part].tolist(), p.material[part].tolist()
             numbers = range(start + 1, start + 1 + len(bc))
             yield "".join(map(line.__mod__, zip(numbers, bc, *columns, material, strict=True))).encode("ascii")
@@ -256,7 +225,7 @@ class _Writer:
             columns = [
                 ["0.0"] * (stop - start)
                 if values is None
-                else self._texts(values[start:stop], width, f"particle {name}")
+                else self._text.texts(values[start:stop], width, f"particle {name}")
                 for name, values, width in columns_of
             ]
             yield "".join(
@@ -290,7 +259,7 @@ class _Writer:
         ends = np.ones(count, bool)
         ends[1:-1] = changes[1:] | changes[:-1]
         numbers: Ints = np.flatnonzero(ends) + 1
-        columns = [self._texts(velocity[numbers - 1, axis], 10, "initial velocities") for axis in range(3)]
+        columns = [self._text.texts(velocity[numbers - 1, axis], 10, "initial velocities") for axis in range(3)]
         yield from map("%8d%10s%10s%10s".__mod__, zip(numbers.tolist(), *columns, strict=True))
         for number in sorted({count + 1, count + overrun} if overrun else ()):
             yield self._line(layouts.VELOCITY, {"number": number}, "velocities")
