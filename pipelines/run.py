@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from zrno.pipelines import options as command_options
 from zrno.pipelines.balance import Balance
 from zrno.pipelines.checkpoint import Checkpointer
-from zrno.pipelines.convert import losses, report_text
+from zrno.pipelines.convert import losses
 from zrno.pipelines.errors import Missing, RunFailed
 from zrno.pipelines.history import History
 from zrno.pipelines.interrupt import held_back
@@ -93,7 +93,7 @@ def run(
             dimension=solver.problem.dimension,
         )
         for report in ready.made:
-            for line in report_text(report).splitlines():
+            for line in [*report["notes"], *losses(report, "approximated", "dropped")]:
                 log.info("making %s: %s", deck.name, line)
         for warning in model.warnings:
             log.warning(warning)
