@@ -74,7 +74,7 @@ def _hexahedra(e: Elements, present: Any, warn: Callable[[int, str], None]) -> I
     some = quadratic = np.zeros(len(corners), bool)
     if present.any():
         some = present.any(axis=1)
-        quadratic = present[:, :12].all(axis=1) & ~present[:, 12]
+        quadratic = present[:, :12].all(axis=1)
     odd = some & ~quadratic
     together = np.zeros(len(corners), bool)
     for a, b in TABLE["hex8"].shape.edges:
@@ -85,8 +85,11 @@ def _hexahedra(e: Elements, present: Any, warn: Callable[[int, str], None]) -> I
         return
     if plain.any():
         yield "hex8", plain, corners[plain], {}
-    if quadratic.any():
-        yield "hex20", quadratic, e.nodes[quadratic][:, np.argsort(HEX_ORDER[:20])], {}
+    for middle in (False, True):
+        rows = quadratic & (present[:, 12] == middle) if present.any() else quadratic
+        if rows.any():
+            more = {"node_21": e.nodes[rows][:, 20]} if middle else {}
+            yield "hex20", rows, e.nodes[rows][:, np.argsort(HEX_ORDER[:20])], more
     if odd.any():
         warn(e.line, f"{int(odd.sum())} hexahedra have some mid-side nodes alone: read as hex8, the others kept")
         yield "hex8", odd, corners[odd], {"nodes_9_21": e.nodes[odd][:, 8:]}

@@ -182,6 +182,8 @@ def _piece(block: ElementBlock, rows: Any, netip: int, report: Report) -> Piece:
             nodes = nodes[:, list(HEX_ORDER)]
         else:
             nodes = nodes[:, list(HEX_ORDER[: min(nodes.shape[1], 20)])]
+        if "node_21" in data:
+            nodes = np.column_stack([nodes, data.pop("node_21")])
         if "nodes_9_21" in data:
             nodes = np.column_stack([nodes[:, :8], data.pop("nodes_9_21")])
     elif TYPES[netip].corners == 4 and TABLE[kind].shape.corners == 3:

@@ -79,6 +79,16 @@ def test_mid_side_nodes_lie_on_the_edges_of_pak_s_own_numbering(tmp_path: Path, 
             assert np.allclose(points[20], points[:8].mean(axis=0))
 
 
+def test_hexahedra_of_21_nodes_are_hex20_and_a_node(tmp_path: Path, mesh: Mesh) -> None:
+    model = mesh("hex20", "hex27")
+    again, notes = there_and_back(model, tmp_path)
+    assert notes == ["hex27 elements"]
+    assert again.element_counts() == {"hex20": 2}
+    (other,) = (block for block in again.blocks if "node_21" in block.data)
+    assert np.array_equal(again.xyz[other.data["node_21"][0]], model.xyz[model.blocks[1].nodes[0, 26]])
+    assert not again.warnings
+
+
 def test_a_hexahedron_s_first_face_is_the_upper_one(tmp_path: Path, mesh: Mesh, strict: ModuleType) -> None:
     write(mesh("hex8"), tmp_path / "a.dat")
     assert next(iter(strict.read(tmp_path / "a.dat").elements[0].values()))[:8] == [5, 6, 7, 8, 1, 2, 3, 4]
