@@ -19,13 +19,15 @@ _CODE_OF_MASK = np.array([0, 1, 2, 4, 3, 6, 5, 7])  # bits x y z -> boundary cod
 def fixed_dofs(model: Model, report: Report | None = None) -> NDArray[np.bool_]:
     """Degrees of freedom held at each node, (n, 6): by the node cards and by constraints together."""
     fixed = np.zeros((len(model.xyz), 6), bool) if model.fixed is None else model.fixed.copy()
-    local = 0
+    local = timed = 0
     for constraint in model.constraints:
+        timed += constraint.birth is not None or constraint.death is not None
         if not is_global(model, constraint.system):
             local += len(constraint.nodes)
             continue
         np.logical_or.at(fixed, constraint.nodes, constraint.dofs)
     if report is not None:
+        report.approximate("constraints", timed, "with a birth or a death: held all the time")
         report.drop("constraints", local, "in a local system that is not along the global axes")
     return fixed
 

@@ -83,5 +83,7 @@ def _report_rest(model: Model, report: Report) -> None:
                 _NOWHERE, report)  # fmt: skip
     said = {"id", "name", "law", "density", "parameters", "source", "tables", "curves"} | own
     report_lost(model.materials.values(), said, "material", _NOWHERE, report)
+    said = {"nodes", "dofs", "id", "name", "set", "system", "source"}
+    report_lost(model.constraints, said, "constraint", _NOWHERE, report)
     report_lost(model.nodal_loads, _LOAD, "load", _NOWHERE, report)
     report_lost(model.face_loads, _LOAD, "load", _NOWHERE, report)
