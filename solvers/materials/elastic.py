@@ -22,11 +22,13 @@ class Elastic(NamedTuple):
 
 
 @overload(stress_update, jit_options=JIT_OPTIONS)
-def _elastic_update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, state, i):
+def _elastic_update(
+    law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i
+):
     if not is_law(law, Elastic):
         return None
 
-    def update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, state, i):
+    def update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i):
         g2 = 2.0 * law.shear
         volumetric = law.lame * (de_xx + de_yy + de_zz)
         return (

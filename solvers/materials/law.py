@@ -25,10 +25,13 @@ def is_law(numba_type: Any, law: type) -> bool:
     return isinstance(numba_type, types.BaseNamedTuple) and numba_type.instance_class is law
 
 
-def stress_update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, state, i):
-    """New stress (6 components) and the energy that plastic flow dissipates per unit volume of one strain increment.
+def stress_update(
+    law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i
+):
+    """New stress (6 components) and the energy that flow dissipates per unit volume of one strain increment.
 
-    Updates state[:, i].
+    rho: density after the increment; e: energy per unit mass before it; dt: how long it takes. A law that does not ask
+    for them does not pay for them. Updates state[:, i].
     """
     raise NotImplementedError("called from jitted code only; `point.drive` is for Python")
 

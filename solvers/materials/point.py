@@ -24,7 +24,7 @@ def _drive(law, strain, spin, stress, state, stresses, states, dissipated):
         xx, yy, zz, xy, yz, zx = spin_rotation(w[0], w[1], w[2], xx, yy, zz, xy, yz, zx)
         rotate_state(law, w[0], w[1], w[2], state, 0)
         xx, yy, zz, xy, yz, zx, work = stress_update(
-            law, e[0], e[1], e[2], e[3], e[4], e[5], xx, yy, zz, xy, yz, zx, state, 0
+            law, e[0], e[1], e[2], e[3], e[4], e[5], xx, yy, zz, xy, yz, zx, 0.0, 0.0, 0.0, state, 0
         )
         stresses[k, 0] = xx
         stresses[k, 1] = yy

@@ -57,11 +57,13 @@ def von_mises(
 
 
 @overload(stress_update, jit_options=JIT_OPTIONS)
-def _isotropic_update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, state, i):
+def _isotropic_update(
+    law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i
+):
     if not is_law(law, VonMisesIsotropic):
         return None
 
-    def update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, state, i):
+    def update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i):
         g2 = 2.0 * law.shear
         de_m = (de_xx + de_yy + de_zz) / 3.0
         s_m = (s_xx + s_yy + s_zz) / 3.0
@@ -104,11 +106,13 @@ def _isotropic_rotate(law, w_xy, w_yz, w_zx, state, i):
 
 
 @overload(stress_update, jit_options=JIT_OPTIONS)
-def _mixed_update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, state, i):
+def _mixed_update(
+    law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i
+):
     if not is_law(law, VonMisesMixed):
         return None
 
-    def update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, state, i):
+    def update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i):
         g2 = 2.0 * law.shear
         de_m = (de_xx + de_yy + de_zz) / 3.0
         mean = (s_xx + s_yy + s_zz) / 3.0

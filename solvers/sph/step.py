@@ -87,8 +87,9 @@ def constitutive(i0, i1, z, number, law, dt, arrays, numbers):
         r_xx, r_yy, r_zz, r_xy, r_yz, r_zx = spin_rotation(w_xy, w_yz, w_zx, o_xx, o_yy, o_zz, o_xy, o_yz, o_zx)
         rotate_state(law, w_xy, w_yz, w_zx, state, i)
         n_xx, n_yy, n_zz, n_xy, n_yz, n_zx, plastic = stress_update(
-            law, d_xx, d_yy, d_zz, d_xy, d_yz, d_zx, r_xx, r_yy, r_zz, r_xy, r_yz, r_zx, state, i
-        )
+            law, d_xx, d_yy, d_zz, d_xy, d_yz, d_zx, r_xx, r_yy, r_zz, r_xy, r_yz, r_zx,
+            rho, arrays.energy[i], dt, state, i,
+        )  # fmt: skip
         viscosity = 0.0
         if volumetric < 0.0:
             closing = -volumetric / dt * arrays.h[i]
