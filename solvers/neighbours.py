@@ -112,7 +112,7 @@ def _gaps(value, radius, origin, size, shape, gap):
 
 @kernel
 def _fill_rows(
-    i0, i1, n, x, y, z, h, reach, h_max, origin, size, shape, start, group, other, first, count, rows, at, end
+    i0, i1, n, x, y, z, h, reach, h_max, origin, size, shape, start, group, other, first, count, rows, at, end, dummy
 ):
     """Rows of neighbours of particles i0..i1 into rows[at:end]; returns the room that they need.
 
@@ -187,7 +187,7 @@ def _fill_rows(
         padded = (total + LANES - 1) // LANES * LANES
         if needed + padded <= end:
             for k in range(needed + total, needed + padded):
-                rows[k] = n
+                rows[k] = dummy
         first[i] = needed
         count[i] = padded
         needed += padded
@@ -217,12 +217,13 @@ def _fill(
     rows,
     room,
     needed,
+    dummy,
 ):
     b = claim(sync, 0)
     while b < len(needed):
         needed[b] = _fill_rows(
             b * BLOCK, min(n, (b + 1) * BLOCK), n, x, y, z, h, reach, h_max, origin, size, shape, start, group, other,
-            first, count, rows, room[b], room[b + 1],
+            first, count, rows, room[b], room[b + 1], dummy,
         )  # fmt: skip
         b = claim(sync, 0)
 
@@ -294,21 +295,69 @@ class NeighbourList:
         group: Any = None,
         other: bool = False,
         threads: int = 1,
+        dummy: int | None = None,
     ) -> None:
         """List the neighbours of points that are already in the order of `cells`.
 
         radius: search radius where h is None, else the largest h (the pair's radius is h_i + h_j). group, other: keep
-        pairs of one body only, or of different bodies only.
+        pairs of one body only, or of different bodies only. dummy: pads the rows; by default the number of points.
         """
         reach = skin if h is not None else radius + skin
         needed = np.zeros(blocks(self.n), np.int64)
         while True:
             run(
-                _fill, threads, self.n, x, y, z, h, reach, radius, cells.origin, cells.size, cells.shape, cells.start,
+                _fill, threads, cells.n, x, y, z, h, reach, radius, cells.origin, cells.size, cells.shape, cells.start,
                 group, other, self.first, self.count, self.rows, self._room, needed,
+                cells.n if dummy is None else dummy,
             )  # fmt: skip
             if np.all(needed <= np.diff(self._room)):
                 return
             roomy = (needed * 1.1).astype(np.int64) // LANES * LANES + 4 * LANES
             self._room[1:] = np.cumsum(roomy)
             self.rows = np.empty(int(self._room[-1]), np.uint32)
+
+    def build_mapped(
+        self,
+        live: int,
+        extra: int,
+        offset: int,
+        x: Floats,
+        y: Floats,
+        z: Floats | None,
+        *,
+        dummy: int,
+        radius: float,
+        skin: float,
+        h: Floats | None = None,
+        group: Any = None,
+        other: bool = False,
+        threads: int = 1,
+    ) -> None:
+        """As `build`, of points in any order: the first `live` ones and `extra` ones from `offset` on.
+
+        Only the first get rows that are meant. dummy: pads the rows.
+        """
+        reach = radius + skin if h is None else 2.0 * radius + skin
+        chosen = np.concatenate((np.arange(live), np.arange(offset, offset + extra)))
+        count = len(chosen)
+        cells = Cells(count, x[chosen], y[chosen], None if z is None else z[chosen], reach)
+        order = chosen[cells.order]
+        sorted_list = NeighbourList(count)
+        sorted_list.build(
+            cells, x[order], y[order], None if z is None else z[order], radius=radius, skin=skin,
+            h=None if h is None else h[order], group=None if group is None else group[order], other=other,
+            threads=threads,
+        )  # fmt: skip
+        _map_rows(count, order, dummy, sorted_list.first, sorted_list.count, sorted_list.rows)
+        real = order < live
+        self.first[order[real]] = sorted_list.first[real]
+        self.count[order[real]] = sorted_list.count[real]
+        self.rows = sorted_list.rows
+
+
+@kernel
+def _map_rows(count, order, dummy, first, counts, rows):
+    """Numbers of sorted points in the rows become numbers of points."""
+    for i in range(count):
+        for k in range(first[i], first[i] + counts[i]):
+            rows[k] = order[rows[k]] if rows[k] < count else dummy

@@ -1,13 +1,14 @@
-"""Pair loops over the Verlet list: velocity gradient, momentum, contact, interface force.
+"""Pair loops over the Verlet list: velocity gradient and momentum.
 
 Each is a serial function over a block of particles with one contiguous, branch-free inner loop that vectorises; what a
 scene does not have is None and is left out when the loop is compiled: z and w in the plane, h where all smoothing
-lengths are equal, mass where all masses are equal, nearest where the time step does not ask for it. Arrays have one
-more entry than there are particles: the dummy that pads the rows, far away.
+lengths are equal, mass where all masses are equal, nearest where the time step does not ask for it, and the cures.
+Arrays have one more entry than there are particles: the dummy that pads the rows, far away.
 
 Shapes: x, y, z, u, v, w, h, mass, volume (n + 1,); gradient (d*d, n + 1) rows du/dx du/dy (du/dz) dv/dx ...; s
-(k, n + 1) with k = 6 (xx yy zz xy yz zx) or 3 (xx yy xy) in the plane: (sigma - q I)/rho^2. scale is a_d / h^(d+2), or
-a_d alone where h is given; a line (one dimension) runs as a plane with y = 0 and says so by `line`.
+(k, n + 1): (sigma - q I)/rho^2, k = 6 (xx yy zz xy yz zx) or 3 (xx yy xy) in the plane; with the gradient correction
+s B, not symmetric, k = 9 or 4 row by row. scale is a_d / h^(d+2), or a_d alone where h is given; a line (one
+dimension) runs as a plane with y = 0 and says so by `line`. shape: the kernel, see `smoothing`.
 """
 
 from __future__ import annotations
@@ -15,21 +16,23 @@ from __future__ import annotations
 import numpy as np
 
 from ..bits import bits_of, of_bits
-from ..contact.potential import original_reference
 from ..jit import kernel
-from .smoothing import inverse_root, spline, spline_slope
+from .smoothing import inverse_root, shape_slope, shape_value
 
 TINY = 1e-30  # keeps the inverse root of coincident particles finite
 ALONE = np.int64(0x7E37E43C8800759C)  # the bits of 1e300: the squared distance of a particle without neighbours
+WELL = 2e-3  # a shape matrix whose determinant is this small beside its mean eigenvalue's power is not inverted
 
 
 @kernel
 def velocity_gradient(
-    i0, i1, first, count, rows, x, y, solid, z, u, v, w, volume, h, inverse_h2, scale, line, gradient
+    i0, i1, first, count, rows, shape, x, y, solid, z, u, v, w, volume, h, inverse_h2, scale, line, gradient, correction
 ):
     """grad v_i = sum_j V_j (v_j - v_i) (x) grad_i W_ij ([T] 4.6.1.13), with the positions that are handed in.
 
-    solid: None in the plane, where z and w are not looked at.
+    solid: None in the plane, where z and w are not looked at. correction: None, or (6 | 3, n + 1) for the inverse B of
+    the shape matrix sum_j V_j (x_j - x_i) (x) grad_i W_ij, which then makes the gradient exact for linear fields
+    (Randles & Libersky 1996): grad v B.
     """
     for i in range(i0, i1):
         xi = x[i]
@@ -48,6 +51,14 @@ def velocity_gradient(
             wx = 0.0
             wy = 0.0
             wz = 0.0
+        if correction is not None:
+            mxx = 0.0
+            myy = 0.0
+            mxy = 0.0
+            if solid is not None:
+                mzz = 0.0
+                myz = 0.0
+                mzx = 0.0
         if h is not None:
             hi = 0.5 * h[i]
         begin = np.uint64(first[i])
@@ -72,23 +83,86 @@ def velocity_gradient(
                 factor = scale
             q2 = r2 * ih2 + TINY
             iq = inverse_root(q2)
-            factor = factor * volume[j] * spline_slope(q2 * iq, iq)
-            dx *= factor
-            dy *= factor
+            factor = factor * volume[j] * shape_slope(shape, q2 * iq, iq)
+            gx = dx * factor
+            gy = dy * factor
             du = u[j] - ui
             dv = v[j] - vi
-            ux += du * dx
-            uy += du * dy
-            vx += dv * dx
-            vy += dv * dy
+            ux += du * gx
+            uy += du * gy
+            vx += dv * gx
+            vy += dv * gy
+            if correction is not None:
+                mxx -= dx * gx
+                myy -= dy * gy
+                mxy -= dx * gy
+                if solid is not None:
+                    mzx -= dz * gx
+                    myz -= dz * gy
             if solid is not None:
-                dz *= factor
+                gz = dz * factor
                 dw = w[j] - wi
-                uz += du * dz
-                vz += dv * dz
-                wx += dw * dx
-                wy += dw * dy
-                wz += dw * dz
+                uz += du * gz
+                vz += dv * gz
+                wx += dw * gx
+                wy += dw * gy
+                wz += dw * gz
+                if correction is not None:
+                    mzz -= dz * gz
+        if correction is not None:
+            if solid is not None:
+                cxx = myy * mzz - myz * myz
+                cxy = myz * mzx - mxy * mzz
+                czx = mxy * myz - myy * mzx
+                determinant = mxx * cxx + mxy * cxy + mzx * czx
+                mean = (mxx + myy + mzz) / 3.0
+                bxx = 1.0
+                byy = 1.0
+                bzz = 1.0
+                bxy = 0.0
+                byz = 0.0
+                bzx = 0.0
+                if determinant > WELL * mean * mean * mean and mean > 0.0:
+                    inverse = 1.0 / determinant
+                    bxx = cxx * inverse
+                    bxy = cxy * inverse
+                    bzx = czx * inverse
+                    byy = (mxx * mzz - mzx * mzx) * inverse
+                    byz = (mxy * mzx - mxx * myz) * inverse
+                    bzz = (mxx * myy - mxy * mxy) * inverse
+                correction[0, i] = bxx
+                correction[1, i] = byy
+                correction[2, i] = bzz
+                correction[3, i] = bxy
+                correction[4, i] = byz
+                correction[5, i] = bzx
+                ux, uy, uz = (
+                    ux * bxx + uy * bxy + uz * bzx, ux * bxy + uy * byy + uz * byz, ux * bzx + uy * byz + uz * bzz
+                )  # fmt: skip
+                vx, vy, vz = (
+                    vx * bxx + vy * bxy + vz * bzx, vx * bxy + vy * byy + vz * byz, vx * bzx + vy * byz + vz * bzz
+                )  # fmt: skip
+                wx, wy, wz = (
+                    wx * bxx + wy * bxy + wz * bzx, wx * bxy + wy * byy + wz * byz, wx * bzx + wy * byz + wz * bzz
+                )  # fmt: skip
+            else:
+                if line is not None:
+                    myy = mxx
+                determinant = mxx * myy - mxy * mxy
+                mean = 0.5 * (mxx + myy)
+                bxx = 1.0
+                byy = 1.0
+                bxy = 0.0
+                if determinant > WELL * mean * mean and mean > 0.0:
+                    inverse = 1.0 / determinant
+                    bxx = myy * inverse
+                    byy = mxx * inverse
+                    bxy = -mxy * inverse
+                correction[0, i] = bxx
+                correction[1, i] = byy
+                correction[2, i] = bxy
+                ux, uy = ux * bxx + uy * bxy, ux * bxy + uy * byy
+                vx, vy = vx * bxx + vy * bxy, vx * bxy + vy * byy
         if solid is not None:
             gradient[0, i] = ux
             gradient[1, i] = uy
@@ -108,47 +182,44 @@ def velocity_gradient(
 
 @kernel
 def momentum(
-    i0,
-    i1,
-    first,
-    count,
-    rows,
-    x,
-    y,
-    z,
-    s,
-    weight,
-    h,
-    inverse_h2,
-    scale,
-    line,
-    body_x,
-    body_y,
-    body_z,
-    ax,
-    ay,
-    az,
-    nearest,
-    density,
-):
+    i0, i1, first, count, rows, shape, x, y, z, s, weight, h, inverse_h2, scale, line, body, ax, ay, az,
+    nearest, density, corrected, artificial, inverse_w, bx, by, bz,
+):  # fmt: skip
     """a_i = sum_j m_j (s_i + s_j) . grad_i W_ij + g: the sum form that conserves momentum pair by pair.
 
     weight: masses, or None where all are equal and in the scale. Where bodies differ in density the sum is
     a_i = sum_j V_j (sigma_i + sigma_j) / rho_i . grad_i W_ij instead: the one whose work is that of the velocity
-    gradient above; then s is the stress, the weights are the volumes and density is given. nearest: None, or (n + 1,)
-    the squared distance to the nearest listed particle.
+    gradient above; then s is the stress, the weights are the volumes and density is given. body: (3,) g. nearest: None,
+    or (n + 1,) the squared distance to the nearest listed particle. corrected: None, or anything where s is s B.
+
+    artificial: None, or the factor e of the artificial stress: the part of a pair's force that pulls the two together
+    is lessened by e f^4, f = W(r)/W(spacing), inverse_w being the inverse of the latter's value; bx.. then keep that
+    part of the acceleration. It is the term of Monaghan (2000) and Gray, Monaghan & Swift (2001), taken along the pair,
+    where the instability W'' sigma > 0 lives, in place of the principal axes: central, so that it turns nothing.
     """
-    if z is not None:
-        sxx = s[0]
-        syy = s[1]
-        szz = s[2]
-        sxy = s[3]
-        syz = s[4]
-        szx = s[5]
+    sxx = s[0]
+    if corrected is not None:
+        sxy = s[1]
+        if z is not None:
+            szx = s[6]
+            sxz = s[2]
+            syx = s[3]
+            syy = s[4]
+            syz = s[5]
+            szy = s[7]
+            szz = s[8]
+        else:
+            syx = s[2]
+            syy = s[3]
     else:
-        sxx = s[0]
         syy = s[1]
-        sxy = s[2]
+        if z is not None:
+            szz = s[2]
+            sxy = s[3]
+            syz = s[4]
+            szx = s[5]
+        else:
+            sxy = s[2]
     for i in range(i0, i1):
         xi = x[i]
         yi = y[i]
@@ -163,6 +234,16 @@ def momentum(
             yzi = syz[i]
             zxi = szx[i]
             a2 = 0.0
+        if corrected is not None:
+            yxi = syx[i]
+            if z is not None:
+                xzi = sxz[i]
+                zyi = szy[i]
+        if artificial is not None:
+            b0 = 0.0
+            b1 = 0.0
+            if z is not None:
+                b2 = 0.0
         if h is not None:
             hi = 0.5 * h[i]
         if nearest is not None:
@@ -193,135 +274,66 @@ def momentum(
                 factor *= weight[j]
             q2 = r2 * ih2 + TINY
             iq = inverse_root(q2)
-            factor *= spline_slope(q2 * iq, iq)
-            dx *= factor
-            dy *= factor
+            factor *= shape_slope(shape, q2 * iq, iq)
+            gx = dx * factor
+            gy = dy * factor
             xy = xyi + sxy[j]
+            yx = xy
+            if corrected is not None:
+                yx = yxi + syx[j]
+            fx = (xxi + sxx[j]) * gx + xy * gy
+            fy = yx * gx + (yyi + syy[j]) * gy
             if z is not None:
-                dz *= factor
+                gz = dz * factor
                 yz = yzi + syz[j]
                 zx = zxi + szx[j]
-                a0 += (xxi + sxx[j]) * dx + xy * dy + zx * dz
-                a1 += xy * dx + (yyi + syy[j]) * dy + yz * dz
-                a2 += zx * dx + yz * dy + (zzi + szz[j]) * dz
-            else:
-                a0 += (xxi + sxx[j]) * dx + xy * dy
-                a1 += xy * dx + (yyi + syy[j]) * dy
+                if corrected is not None:
+                    xz = xzi + sxz[j]
+                    zy = zyi + szy[j]
+                else:
+                    xz = zx
+                    zy = yz
+                fx += xz * gz
+                fy += yz * gz
+                fz = zx * gx + zy * gy + (zzi + szz[j]) * gz
+                a2 += fz
+            a0 += fx
+            a1 += fy
+            if artificial is not None:
+                pull = fx * dx + fy * dy
+                if z is not None:
+                    pull += fz * dz
+                f = shape_value(shape, q2 * iq) * inverse_w
+                f *= f
+                push = artificial * f * f * max(0.0, -pull) * iq * iq * ih2
+                b0 += push * dx
+                b1 += push * dy
+                if z is not None:
+                    b2 += push * dz
+        if artificial is not None:
+            a0 += b0
+            a1 += b1
+            if z is not None:
+                a2 += b2
         if density is not None:
             inverse = 1.0 / density[i]
             a0 *= inverse
             a1 *= inverse
             if z is not None:
                 a2 *= inverse
-        ax[i] = a0 + body_x
-        ay[i] = a1 + body_y
+            if artificial is not None:
+                b0 *= inverse
+                b1 *= inverse
+                if z is not None:
+                    b2 *= inverse
+        ax[i] = a0 + body[0]
+        ay[i] = a1 + body[1]
         if z is not None:
-            az[i] = a2 + body_z
+            az[i] = a2 + body[2]
+        if artificial is not None:
+            bx[i] = b0
+            by[i] = b1
+            if z is not None:
+                bz[i] = b2
         if nearest is not None:
             nearest[i] = of_bits(least)
-
-
-@kernel
-def contact_acceleration(
-    i0,
-    i1,
-    first,
-    count,
-    rows,
-    x,
-    y,
-    z,
-    mass,
-    h,
-    volume_exponent,
-    normal,
-    material,
-    strength,
-    exponent,
-    original,
-    ax,
-    ay,
-    az,
-    cx,
-    cy,
-    cz,
-):
-    """Adds the repulsive contact (`contact.potential`) to the acceleration, and keeps it in cx, cy, cz.
-
-    h, mass: (n + 1,). volume_exponent: -(d + 2); normal: a_d of the spline. strength, exponent: K and n of each
-    material. original: as the original program codes it (n of particle i's material, its divisor of f).
-    """
-    for i in range(i0, i1):
-        a0 = 0.0
-        a1 = 0.0
-        a2 = 0.0
-        mi = material[i]
-        for k in range(first[i], first[i] + count[i]):
-            j = rows[k]
-            mean = 0.5 * (h[i] + h[j])
-            dx = x[i] - x[j]
-            dy = y[i] - y[j]
-            r2 = dx * dx + dy * dy
-            if z is not None:
-                dz = z[i] - z[j]
-                r2 += dz * dz
-            if r2 >= 4.0 * mean * mean:
-                continue
-            mj = material[j]
-            q2 = r2 / (mean * mean) + TINY
-            iq = inverse_root(q2)
-            shape = spline(q2 * iq)
-            if original:
-                f = 1.5 * shape / original_reference(h[j] / mean)
-                power = exponent[mi]
-            else:
-                f = shape / spline(1.0)
-                power = 0.5 * (exponent[mi] + exponent[mj])
-            factor = (
-                -mass[j] * (strength[mi] + strength[mj]) * f**power
-                * normal * mean**volume_exponent * spline_slope(q2 * iq, iq)
-            )  # fmt: skip
-            a0 += factor * dx
-            a1 += factor * dy
-            if z is not None:
-                a2 += factor * dz
-        cx[i] = a0
-        cy[i] = a1
-        ax[i] += a0
-        ay[i] += a1
-        if z is not None:
-            cz[i] = a2
-            az[i] += a2
-
-
-@kernel
-def interface_force(i0, i1, first, count, rows, x, y, z, s, weight, h, volume_exponent, normal, material, body, force):
-    """Adds to force[3] what particles of other materials do to those of material `body` through the momentum sum."""
-    for i in range(i0, i1):
-        if material[i] != body:
-            continue
-        for k in range(first[i], first[i] + count[i]):
-            j = rows[k]
-            dx = x[i] - x[j]
-            dy = y[i] - y[j]
-            r2 = dx * dx + dy * dy
-            if z is not None:
-                dz = z[i] - z[j]
-                r2 += dz * dz
-            mean = 0.5 * (h[i] + h[j])
-            if r2 >= 4.0 * mean * mean or material[j] == body:
-                continue
-            q2 = r2 / (mean * mean) + TINY
-            iq = inverse_root(q2)
-            factor = weight[i] * weight[j] * normal * mean**volume_exponent * spline_slope(q2 * iq, iq)
-            if z is not None:
-                xy = s[3, i] + s[3, j]
-                yz = s[4, i] + s[4, j]
-                zx = s[5, i] + s[5, j]
-                force[0] += factor * ((s[0, i] + s[0, j]) * dx + xy * dy + zx * dz)
-                force[1] += factor * (xy * dx + (s[1, i] + s[1, j]) * dy + yz * dz)
-                force[2] += factor * (zx * dx + yz * dy + (s[2, i] + s[2, j]) * dz)
-            else:
-                xy = s[2, i] + s[2, j]
-                force[0] += factor * ((s[0, i] + s[0, j]) * dx + xy * dy)
-                force[1] += factor * (xy * dx + (s[1, i] + s[1, j]) * dy)

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..materials import Law
+from .ghosts import PERIODIC, Plane
+from .smoothing import shape_of
 
 Floats = NDArray[np.float64]
 
@@ -19,7 +21,8 @@ class Body:
     """One material and the particles that own it.
 
     number: of the deck; law: of `zrno.solvers.materials`; density [mass/length^3]; linear, quadratic: artificial
-    viscosity [-]; least, most: limits of the density; strength, exponent: of the repulsive contact.
+    viscosity by the rate of volume [-]; least, most: limits of the density; strength, exponent: of the repulsive
+    contact; alpha, beta: of Monaghan's pair viscosity [-].
     """
 
     number: int
@@ -32,6 +35,24 @@ class Body:
     most: float = 1e10
     strength: float = 0.0
     exponent: float = 0.0
+    alpha: float = 0.0
+    beta: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Cures:
+    """Remedies of the method's known defects; off unless asked for.
+
+    correction: gradients exact for linear fields, at free surfaces and in disorder; artificial_stress: factor against
+    tension instability (0.2 .. 0.5); density_diffusion: delta-SPH for fluids (0.1); stress_diffusion: regularised
+    stress of grain (0.1); xsph: particles move with the mean velocity, factor 0 .. 1.
+    """
+
+    correction: bool = False
+    artificial_stress: float = 0.0
+    density_diffusion: float = 0.0
+    stress_diffusion: float = 0.0
+    xsph: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +63,10 @@ class Problem:
     index into `bodies`; fixed: (n, 3) directions that do not move; id: (n,) numbers of the deck. dimension 1, 2 (plane
     strain) or 3. step_option: see STEP_OPTIONS; step_factor: of the critical step; first_step: 0 for automatic.
     potential: bodies repel by the contact potential; otherwise they are ordinary neighbours (kernel contact).
-    body_force: acceleration (3,). original: do as the original program does where that differs.
+    body_force: acceleration (3,); body_curve: or times (k,) and accelerations (k, 3), linear between them. original: do
+    as the original program does where that differs. kernel: a name of `smoothing.NAMES`. h_option: 0 h is constant, 1
+    dh/dt = h div v / d, 2 h = h0 (rho0/rho)^(1/d). relaxation: factor of all velocities in each step (dynamic
+    relaxation), 1 for none. planes: of the boundary, see `ghosts`. cures: see `Cures`.
     """
 
     dimension: int
@@ -63,6 +87,12 @@ class Problem:
     potential: bool = False
     body_force: tuple[float, float, float] = (0.0, 0.0, 0.0)
     original: bool = False
+    body_curve: tuple[Floats, Floats] | None = None
+    kernel: str = "cubic"
+    h_option: int = 0
+    relaxation: float = 1.0
+    planes: tuple[Plane, ...] = ()
+    cures: Cures = field(default_factory=lambda: Cures())
     title: str = field(default="")
 
     def __post_init__(self) -> None:
@@ -73,6 +103,13 @@ class Problem:
             raise ValueError(f"dimension {self.dimension} must be 1, 2 or 3")
         if self.step_option not in STEP_OPTIONS:
             raise ValueError(f"step option {self.step_option} must be one of {sorted(STEP_OPTIONS)}")
+        if self.h_option not in (0, 1, 2):
+            raise ValueError(f"h option {self.h_option} must be 0, 1 or 2")
+        shape_of(self.kernel, self.dimension)
+        for axis in range(3):
+            sides = {plane.side for plane in self.planes if plane.axis == axis and plane.kind == PERIODIC}
+            if len(sides) == 1:
+                raise ValueError(f"a periodic plane across {'xyz'[axis]} needs its opposite")
         for name, value in (("mass", self.mass), ("smoothing length", self.h), ("density", self.density)):
             if value.shape != (n,) or not np.all(value > 0.0) or not np.all(np.isfinite(value)):
                 raise ValueError(f"every particle needs a positive {name}")

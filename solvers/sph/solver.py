@@ -16,13 +16,14 @@ from numpy.typing import NDArray
 
 from ..errors import Diverged
 from ..frame import Frame
+from ..jit import kernel
 from ..materials import PLASTIC_STRAIN, sound_speed, state_rows
 from ..neighbours import FAR, Cells, NeighbourList
 from ..threads import available, run
-from . import measures, pairs, step
+from . import across, ghosts, measures, step
 from .problem import STEP_OPTIONS, Problem
-from .smoothing import SUPPORT, normaliser
-from .state import Arrays, Numbers, State
+from .smoothing import normaliser, shape_of, shape_value
+from .state import Arrays, Numbers, Rows, State
 
 SKIN = 0.25  # of the largest h: the list's spare radius
 CHECKED = 50  # steps between looks at the energy balance
@@ -30,6 +31,11 @@ CREATED = 3.0  # so many times the energy put in cannot come out of a stable run
 SMALL = 2000  # fewer particles run on one thread: a parallel region costs more than it saves
 
 Floats = NDArray[np.float64]
+
+
+@kernel
+def _value(shape, q):
+    return shape_value(shape, q)
 
 
 class Solver:
@@ -40,13 +46,31 @@ class Solver:
         self.end_time = problem.end_time
         self.builds = 0
         n = self.n = len(problem.x)
+        self.live = n  # particles that have not left the problem; the others stand behind them
         self.threads = 1 if n < SMALL else max(1, min(threads or available(), available()))
+        self._shape = shape_of(problem.kernel, problem.dimension)
         self._mixed = self._is_mixed()
-        self._uniform_h = bool(np.all(problem.h == problem.h[0]))
+        self._uniform_h = bool(np.all(problem.h == problem.h[0])) and problem.h_option == 0
         self._uniform_mass = bool(np.all(problem.mass == problem.mass[0]))
-        self._radius = SUPPORT * float(problem.h.max())
-        self._skin = skin * float(problem.h.max())
-        self._state = State(n, problem.dimension, max(state_rows(b.law) for b in problem.bodies), problem.potential)
+        self._skin = skin * float(problem.h.max()) * 0.5 * self._shape.support
+        cures = problem.cures
+        self._heats = any(b.alpha or b.beta for b in problem.bodies)
+        has = Rows(
+            state=max(state_rows(b.law) for b in problem.bodies),
+            contact=problem.potential,
+            correction=cures.correction,
+            artificial=cures.artificial_stress > 0.0,
+            heat=self._heats,
+            density_rate=cures.density_diffusion > 0.0,
+            stress_rate=cures.stress_diffusion > 0.0,
+            xsph=cures.xsph > 0.0,
+            changing_h=problem.h_option != 0,
+            body_work=problem.body_curve is not None,
+        )
+        self._has = has
+        self._state = State(n, problem.dimension, has)
+        self._images = ghosts.Images(np.zeros(0, np.int64), np.zeros((3, 0)), np.zeros((3, 0)))
+        self._mirrored = any(p.kind in (ghosts.SYMMETRY, ghosts.PERIODIC) for p in problem.planes)
         self._progress = np.zeros(step.PROGRESS)
         self._list = NeighbourList(n)
         self._others = NeighbourList(n)
@@ -78,7 +102,9 @@ class Solver:
     def _make_numbers(self) -> Numbers:
         p = self.problem
         h = float(p.h[0])
-        normal = normaliser(p.dimension)
+        normal = normaliser(self._shape, p.dimension)
+        times, values = p.body_curve or (np.zeros(2), np.zeros((2, 3)))
+        spacing = float(np.median((p.mass / p.density) ** (1.0 / p.dimension) / p.h))
         wave = np.array([sound_speed(b.law, b.density) for b in p.bodies])
         viscous = np.array([(b.linear * c, b.quadratic, b.least, b.most) for b, c in zip(p.bodies, wave, strict=True)])
         scale = normal / h ** (p.dimension + 2) if self._uniform_h else normal
@@ -90,9 +116,13 @@ class Solver:
             normal=normal,
             viscous=viscous,
             wave=wave,
-            body_x=p.body_force[0],
-            body_y=p.body_force[1],
-            body_z=p.body_force[2],
+            body=np.array(p.body_force if p.body_curve is None else values[0], dtype=float),
+            body_times=np.asarray(times, dtype=float),
+            body_values=np.asarray(values, dtype=float),
+            h_option=p.h_option,
+            relaxation=p.relaxation,
+            pair_viscosity=np.array([(b.alpha, b.beta) for b in p.bodies]),
+            inverse_w=1.0 / _value(self._shape, spacing),
             step_option=p.step_option,
             step_factor=p.step_factor,
             original=p.original,
@@ -114,8 +144,13 @@ class Solver:
         s.material[:n] = p.body
         if p.fixed is not None:
             s.fixed[:n] = p.fixed @ np.array([1, 2, 4])
-        span = max(float(np.ptp(p.x, axis=0).max()), self._radius)
-        s.place_dummy(float(np.abs(p.x).max()) + FAR * self._radius + span)
+        if self._has.changing_h:
+            s.rows("h_start")[0, :n] = p.h * p.density ** (1.0 / p.dimension)
+        if self._has.correction:  # none yet: the stress-free start needs none
+            s.rows("correction")[: 3 if p.dimension == 3 else 2] = 1.0
+        radius = self._shape.support * float(p.h.max())
+        span = max(float(np.ptp(p.x, axis=0).max()), radius)
+        s.place_dummy(float(np.abs(p.x).max()) + FAR * radius + span)
 
     def _start_as_original(self, first: float) -> None:
         """The original program begins with a whole step of strain, at positions half a step before the start."""
@@ -129,12 +164,30 @@ class Solver:
         p = self.problem
         laws = ", ".join(dict.fromkeys(type(law).__name__ for law in self._laws))
         return (
-            f"{p.dimension}D, cubic spline, {'one' if self._uniform_h else 'variable'} h, "
+            f"{p.dimension}D, {p.kernel} kernel, {'one' if self._uniform_h else 'variable'} h, "
             f"{'one' if self._uniform_mass else 'variable'} mass, laws: {laws}, "
             f"contact: {'potential' if p.potential else 'kernel' if len(p.bodies) > 1 else 'none'}, "
             f"step: {STEP_OPTIONS[p.step_option]}, {self.threads} thread(s)"
-            + (", as the original program" if p.original else "")
+            + "".join(f", {term}" for term in self._terms())
         )
+
+    def _terms(self) -> list[str]:
+        """What a run has beyond the plain method."""
+        p, cures = self.problem, self.problem.cures
+        said = {
+            "gradient correction": cures.correction,
+            f"artificial stress {cures.artificial_stress:g}": cures.artificial_stress > 0.0,
+            f"density diffusion {cures.density_diffusion:g}": cures.density_diffusion > 0.0,
+            f"stress diffusion {cures.stress_diffusion:g}": cures.stress_diffusion > 0.0,
+            f"XSPH {cures.xsph:g}": cures.xsph > 0.0,
+            "pair viscosity": self._heats,
+            f"h option {p.h_option}": p.h_option != 0,
+            f"dynamic relaxation {p.relaxation:g}": p.relaxation != 1.0,
+            f"{len(p.planes)} boundary plane(s)": bool(p.planes),
+            "base acceleration by curve": p.body_curve is not None,
+            "as the original program": p.original,
+        }
+        return [term for term, there in said.items() if there]
 
     # the loop
 
@@ -182,22 +235,41 @@ class Solver:
 
     def _run_kernel(self, until: float, steps: int, pause: float = math.inf) -> int:
         a = self._arrays()
-        solid = self.problem.dimension == 3
-        potential = self.problem.potential
+        p, cures, has = self.problem, self.problem.cures, self._has
+        solid = p.dimension == 3
+        images = self._images if self._mirrored else None
         return int(
             run(
                 step.advance,
                 self.threads,
+                self.live,
                 self.n,
+                self._shape,
                 True if solid else None,
                 a.z if solid else None,
                 None if self._uniform_h else a.h,
                 None if self._uniform_mass else a.mass,
-                a.nearest if self.problem.step_option == 2 else None,
-                True if self.problem.dimension == 1 else None,
-                a.cx if potential else None,
-                True if potential else None,
+                a.nearest if p.step_option == 2 else None,
+                True if p.dimension == 1 else None,
+                a.cx,
+                True if p.potential else None,
                 True if self._mixed else None,
+                a.correction if has.correction else None,
+                a.bx,
+                cures.artificial_stress if has.artificial else None,
+                a.h_list,
+                a.h_start,
+                a.density_rate,
+                cures.density_diffusion,
+                a.stress_rate if has.stress_rate else None,
+                cures.stress_diffusion,
+                a.heat,
+                a.smoothed if has.xsph else None,
+                cures.xsph,
+                a.body_work,
+                None if images is None else images.source,
+                None if images is None else images.sign,
+                None if images is None else images.shift,
                 a,
                 self._numbers,
                 self._laws,
@@ -228,6 +300,18 @@ class Solver:
             cy=s.row("c", 1),
             cz=s.row("c", 2),
             contact_work=s.row("contact_work"),
+            bx=s.row("b", 0),
+            by=s.row("b", 1),
+            bz=s.row("b", 2),
+            artificial_work=s.row("artificial_work"),
+            heat=s.row("heat"),
+            h_start=s.row("h_start"),
+            h_list=s.row("h_list"),
+            correction=s.rows("correction"),
+            density_rate=s.row("density_rate"),
+            stress_rate=s.rows("stress_rate"),
+            smoothed=s.rows("smoothed"),
+            body_work=s.row("body_work"),
             stress=s.rows("stress"),
             gradient=s.rows("gradient"),
             s=s.rows("s"),
@@ -257,24 +341,77 @@ class Solver:
 
         sort False: from where the last list was built, as it was.
         """
-        s, n = self._state, self.n
+        s = self._state
         if sort:
+            self._leave()
             s.rows("x_list")[:] = s.rows("x")
+            if self._has.changing_h:
+                s.rows("h_list")[:] = s.rows("h")
+        n = self.live
+        h_max = float(s.rows("h_list" if self._has.changing_h else "h")[0, :n].max())
+        radius = h_max * self._shape.support
+        rows = s.rows("x_list")
+        cells = Cells(n, rows[0], rows[1], rows[2] if s.d == 3 else None, radius + self._skin)
+        if sort:
+            s.sort(cells.order, self.threads)
+        if self._mirrored:
+            self._make_images(radius + self._skin)
         x, y, z = s.row("x_list", 0), s.row("x_list", 1), s.row("x_list", 2)
         assert x is not None
         assert y is not None
-        cells = Cells(n, x, y, z, self._radius + self._skin)
-        if sort:
-            s.sort(cells.order, self.threads)
-        h = None if self._uniform_h else s.row("h")
-        radius = self._radius if h is None else 0.5 * self._radius
+        h = None
+        if not self._uniform_h:  # the pair's radius is half the support of both
+            h = s.rows("h_list" if self._has.changing_h else "h")[0] * (0.5 * self._shape.support)
+            radius *= 0.5
         group = s.material if self.problem.potential else None
-        self._list.build(cells, x, y, z, radius=radius, skin=self._skin, h=h, group=group, threads=self.threads)
-        if self.problem.potential:
-            self._others.build(
-                cells, x, y, z, radius=radius, skin=self._skin, h=h, group=group, other=True, threads=self.threads
-            )
+        wanted = [(self._list, False)] + ([(self._others, True)] if self.problem.potential else [])
+        for neighbours, other in wanted:
+            if self._mirrored:
+                neighbours.build_mapped(
+                    n, len(self._images), self.n, x, y, z, dummy=s.dummy, radius=radius, skin=self._skin, h=h,
+                    group=group, other=other, threads=self.threads,
+                )  # fmt: skip
+            else:
+                neighbours.build(
+                    cells, x, y, z, radius=radius, skin=self._skin, h=h, group=group, other=other, threads=self.threads,
+                    dummy=s.dummy,
+                )  # fmt: skip
         self.builds += 1
+
+    def _leave(self) -> None:
+        """Bring particles that left a periodic box back, and put those beyond a limit behind the others."""
+        s, planes = self._state, self.problem.planes
+        if not planes:
+            return
+        moving = [np.stack([s.rows(name)[axis] for name in ("x", "x_half", "x_start")]) for axis in range(s.d)]
+        ghosts.wrap(planes, moving, self.live)
+        for axis, moved in enumerate(moving):
+            for name, values in zip(("x", "x_half", "x_start"), moved, strict=True):
+                s.rows(name)[axis, : self.live] = values[: self.live]
+        out = ghosts.beyond_limit(planes, s.rows("x")[:, : self.live])
+        if np.any(out):
+            if np.all(out):
+                raise Diverged(self.step, int(s.id[0]), "all particles have left the problem through its limit planes")
+            s.sort(np.concatenate((np.flatnonzero(~out), np.flatnonzero(out))), self.threads)
+            self.live -= int(np.count_nonzero(out))
+
+    def _make_images(self, reach: float) -> None:
+        """Images of the particles near planes, with everything that the loops read of them."""
+        s = self._state
+        found = ghosts.images(self.problem.planes, s.rows("x_list")[:, : self.live], reach)
+        s.make_room(len(found))
+        self._images = found
+        at = slice(self.n, self.n + len(found))
+        for name in ("mass", "h", *(["h_list"] if self._has.changing_h else [])):
+            s.rows(name)[0, at] = s.rows(name)[0, found.source]
+        s.material[at] = s.material[found.source]
+        s.rows("x_list")[:, at] = found.sign[: s.d] * s.rows("x_list")[:, found.source] + found.shift[: s.d]
+        a = self._arrays()
+        z = a.z if s.d == 3 else None
+        ghosts.follow_motion(0, len(found), self.n, z, found.source, found.sign, found.shift, a)
+        ghosts.follow_stress(
+            0, len(found), self.n, z, a.correction if self._has.correction else None, found.source, found.sign, a
+        )
 
     def _check_energy(self) -> None:
         """An unstable step makes energy out of nothing, long before a number overflows."""
@@ -342,8 +479,9 @@ class Solver:
             first = s.material[:n] == 0
             force[: s.d] = (s.rows("c")[:, :n] * s.rows("mass")[0, :n] * first).sum(axis=1)
         elif len(self.problem.bodies) > 1:
-            pairs.interface_force(
-                0, n, a.first, a.count, a.rows, a.x, a.y, a.z, a.s, a.volume if self._mixed else a.mass, a.h,
+            across.interface_force(
+                0, self.live, a.first, a.count, a.rows, self._shape, a.x, a.y, a.z, a.s,
+                a.volume if self._mixed else a.mass, a.h,
                 -(self.problem.dimension + 2.0), self._numbers.normal, a.material, 0, force,
             )  # fmt: skip
         return force
@@ -367,7 +505,7 @@ class Solver:
             **energies,
             **dict(zip(("momentum_x", "momentum_y", "momentum_z"), momentum.tolist(), strict=True)),
             **dict(zip(("contact_force_x", "contact_force_y", "contact_force_z"), force.tolist(), strict=True)),
-            "active": float(n),
+            "active": float(self.live),
             "contact_energy": contact_energy,
             "max_plastic_strain": float(plastic.max()),
             "step": float(self.step),
@@ -397,6 +535,7 @@ class Solver:
         """Everything that another process needs to go on bit for bit, including where the neighbour list was built."""
         s, n = self._state, self.n
         data: dict[str, Any] = {name: np.array(s.rows(name)[:, :n]) for name in s.slices}
+        data["live"] = self.live
         data |= {"id": s.id[:n].copy(), "material": s.material[:n].copy(), "fixed": s.fixed[:n].copy()}
         return data | {
             "progress": self._progress.copy(),
@@ -415,6 +554,7 @@ class Solver:
             s.rows(name)[:, :n] = data[name]
         for name in ("id", "material", "fixed"):
             getattr(s, name)[:n] = data[name]
+        self.live = int(data["live"])
         self._progress[:] = data["progress"]
         self._start_energy = dict(zip(self._start_energy, np.asarray(data["start_energy"]).tolist(), strict=True))
         self._rebuild(sort=False)

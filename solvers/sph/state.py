@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,14 +15,17 @@ Floats = NDArray[np.float64]
 
 
 class Arrays(NamedTuple):
-    """Rows of the state that the loops see, each (n + 1,) or (k, n + 1); entry n is the dummy that pads neighbour rows.
+    """Rows of the state that the loops see, each (m,) or (k, m): n particles, images, the dummy that pads rows.
 
     x y z, x_half.. (half a step back), x_list.. (where the list was built), x_start..: positions; u v w: velocities at
     the half step before; ax..: accelerations; stress (6 or 4: xx yy zz xy (yz zx)); gradient: of the velocity; s:
     (sigma - q I)/rho^2; density, volume m/rho, mass, h, energy, dissipated (per unit mass); viscosity: pressure q;
     nearest: squared distance; cx..: contact acceleration; contact_work: work of contact on a particle; state: the laws'
-    history; id, material, fixed (bits x y z): integers; first, count, rows: the neighbour list; c_first, c_count,
-    c_rows: the list of other bodies; reduced: (threads, .) what each thread found.
+    history; h_start: h0 rho0^(1/d), h_list: h where the list was built; correction: inverse shape matrix; bx..:
+    acceleration by artificial stress, artificial_work: its work on a particle; heat: power per mass of pair viscosity;
+    density_rate, stress_rate: of diffusion; smoothed: velocities of XSPH; body_work: of a body force that changes;
+    id, material, fixed (bits x y z): integers; first, count, rows: the neighbour list; c_first, c_count, c_rows: the
+    list of other bodies; reduced: (threads, .) what each thread found.
     """
 
     x: Any
@@ -43,6 +47,18 @@ class Arrays(NamedTuple):
     cy: Any
     cz: Any
     contact_work: Any
+    bx: Any
+    by: Any
+    bz: Any
+    artificial_work: Any
+    heat: Any
+    h_start: Any
+    h_list: Any
+    correction: Any
+    density_rate: Any
+    stress_rate: Any
+    smoothed: Any
+    body_work: Any
     stress: Any
     gradient: Any
     s: Any
@@ -72,7 +88,9 @@ class Numbers(NamedTuple):
 
     mixed: bodies of different density are neighbours. scale, force_scale: see `pairs`, the latter times the mass where
     all are equal; normal: a_d. viscous: (bodies, 4) linear coefficient times c, quadratic, density limits; wave:
-    (bodies,) speeds; strength, exponent: (bodies,) of the contact.
+    (bodies,) speeds; strength, exponent: (bodies,) of the contact. body: (3,) acceleration now, by the table
+    body_times (k,), body_values (k, 3). h_option: as the deck's. relaxation: factor of the velocities in each step.
+    pair_viscosity: (bodies, 2) alpha and beta; inverse_w: 1/W at the particles' spacing.
     """
 
     dimension: int
@@ -82,9 +100,13 @@ class Numbers(NamedTuple):
     normal: float
     viscous: Any
     wave: Any
-    body_x: float
-    body_y: float
-    body_z: float
+    body: Any
+    body_times: Any
+    body_values: Any
+    h_option: int
+    relaxation: float
+    pair_viscosity: Any
+    inverse_w: float
     step_option: int
     step_factor: float
     original: bool
@@ -104,19 +126,48 @@ def _permute(thread, threads, sync, numbers, spare, rows, order):
             numbers[k, i] = spare[k, i]
 
 
-class State:
-    """Storage of the rows above in one array of (rows, n + 1 and some), so that sorting moves everything at once."""
+@dataclass(frozen=True, slots=True)
+class Rows:
+    """Which optional rows a run has.
 
-    def __init__(self, n: int, dimension: int, state_rows: int, contact: bool) -> None:
+    state: of the laws; the others say whether: contact, correction, artificial stress, pair viscosity (heat), density
+    and stress diffusion, xsph, a changing h, a changing body force.
+    """
+
+    state: int = 0
+    contact: bool = False
+    correction: bool = False
+    artificial: bool = False
+    heat: bool = False
+    density_rate: bool = False
+    stress_rate: bool = False
+    xsph: bool = False
+    changing_h: bool = False
+    body_work: bool = False
+
+
+class State:
+    """Storage of the rows above in one array of (rows, n + room + 1), so that sorting moves everything at once.
+
+    room: for images; the dummy is the last entry.
+    """
+
+    def __init__(self, n: int, dimension: int, has: Rows, room: int = 0) -> None:
         solid = dimension == 3
         d = 3 if solid else 2  # a line runs as a plane with y = 0
         self.n = n
         self.d = d
+        six = 6 if solid else 4
         sizes = {
-            "x": d, "u": d, "a": d, "x_half": d, "x_list": d, "x_start": d, "stress": 6 if solid else 4,
+            "x": d, "u": d, "a": d, "x_half": d, "x_list": d, "x_start": d, "stress": six,
             "density": 1, "volume": 1, "mass": 1, "h": 1, "energy": 1, "dissipated": 1, "viscosity": 1,
-            "contact_work": int(contact), "state": state_rows,
-            "gradient": d * d, "s": 6 if solid else 3, "nearest": 1, "c": d if contact else 0,
+            "contact_work": int(has.contact), "artificial_work": int(has.artificial), "heat": int(has.heat),
+            "h_start": int(has.changing_h), "h_list": int(has.changing_h), "body_work": int(has.body_work),
+            "b": d if has.artificial else 0, "state": has.state,
+            "gradient": d * d, "s": (d * d if has.correction else 6 if solid else 3), "nearest": 1,
+            "c": d if has.contact else 0, "correction": (6 if solid else 3) if has.correction else 0,
+            "density_rate": int(has.density_rate), "stress_rate": six if has.stress_rate else 0,
+            "smoothed": d if has.xsph else 0,
         }  # fmt: skip
         self.slices: dict[str, slice] = {}
         at = 0
@@ -125,35 +176,53 @@ class State:
             at += rows
         # the rows above are made anew in each step; those before them follow a sorted particle and go into a checkpoint
         self.lasting = self.slices["state"].stop
-        width = (n + 1 + 7) // 8 * 8 + 8
+        self._rows = at
+        self.id: NDArray[np.int64]
+        self.material: NDArray[np.int64]
+        self.fixed: NDArray[np.int64]
+        self._allocate(room)
+
+    def _allocate(self, room: int) -> None:
+        self.dummy = self.n + room
+        width = (self.dummy + 1 + 7) // 8 * 8 + 8
         if width % 512 == 0:
             width += 8  # rows a multiple of 4 KiB apart would share the same cache sets
-        self.numbers: Floats = np.zeros((at, width))
+        self.numbers: Floats = np.zeros((self._rows, width))
         self._spare: Floats = np.zeros((self.lasting, width))
-        self.id: NDArray[np.int64] = np.zeros(n + 1, np.int64)
-        self.material: NDArray[np.int64] = np.zeros(n + 1, np.int64)
-        self.fixed: NDArray[np.int64] = np.zeros(n + 1, np.int64)
+        self.id, self.material, self.fixed = (np.zeros(self.dummy + 1, np.int64) for _ in range(3))
+
+    def make_room(self, room: int) -> None:
+        """Have room for so many images at least."""
+        if self.n + room <= self.dummy:
+            return
+        old = self.numbers, self.id, self.material, self.fixed
+        self._allocate(room + room // 4)
+        n = self.n
+        self.numbers[:, :n] = old[0][:, :n]
+        for now, then in zip((self.id, self.material, self.fixed), old[1:], strict=True):
+            now[:n] = then[:n]
+        self.place_dummy(self.far)
 
     def rows(self, name: str) -> Floats:
-        """(k, n + 1) rows of one name; a view."""
-        return self.numbers[self.slices[name], : self.n + 1]
+        """(k, dummy + 1) rows of one name; a view."""
+        return self.numbers[self.slices[name], : self.dummy + 1]
 
     def row(self, name: str, k: int = 0) -> Floats | None:
-        """(n + 1,) one row of a name, None where it has none; a view."""
+        """(dummy + 1,) one row of a name, None where it has none; a view."""
         rows = self.rows(name)
         return rows[k] if k < len(rows) else None
 
     def sort(self, order: NDArray[np.int64], threads: int) -> None:
-        """Put the particles into a new order; order: (n,) old places."""
-        n = self.n
+        """Put the particles into a new order; order: old places, of all or of the first."""
+        n = len(order)
         run(_permute, threads, self.numbers, self._spare, self.lasting, order)
         for whole in (self.id, self.material, self.fixed):
             whole[:n] = whole[:n][order]
 
     def place_dummy(self, far: float) -> None:
         """Put the dummy out of everybody's reach; its mass and volume are zero."""
-        n = self.n
+        self.far = far
         for name in ("x", "x_half"):
-            self.rows(name)[:, n] = far
-        self.rows("h")[:, n] = self.rows("h")[:, :n].max()
-        self.rows("density")[:, n] = 1.0
+            self.rows(name)[:, self.dummy] = far
+        self.rows("h")[:, self.dummy] = self.rows("h")[:, : self.n].max()
+        self.rows("density")[:, self.dummy] = 1.0

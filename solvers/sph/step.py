@@ -1,4 +1,4 @@
-"""One time step: what happens at a particle, and the order of the phases.
+"""One time step: the order of its phases.
 
 Leap-frog: positions and stresses live at whole steps, velocities at half steps. The invariant between steps,
 "synchronised": positions, stresses and accelerations at t, velocities at t - dt_last/2. A step then is
@@ -6,18 +6,17 @@ Leap-frog: positions and stresses live at whole steps, velocities at half steps.
     grad v at x - dt v/2, density, rotation, stress, viscosity, energy     strain
     a, nearest distance, contact, the next dt                              force
 `prepare` does the last two once at the start. The original program numbers the same states differently; see `solver`.
+What a scene does not have is None in `advance`'s arguments and is not compiled at all.
 """
 
 from __future__ import annotations
 
 import numpy as np
-from numba.extending import overload
 
 from ..jit import kernel
-from ..materials.law import JIT_OPTIONS, rotate_state, stress_update
-from ..materials.rotation import spin_rotation
 from ..threads import barrier, claim, share
-from . import pairs
+from . import across, cures, ghosts, pairs
+from .particle import critical_step, drift, each_law, half_work, kick
 
 # entries of `progress`, the loop's own memory
 TIME, LAST, NEXT, STEPS, PENDING, FIRST, BAD = range(7)
@@ -34,176 +33,29 @@ COLLAPSE = 1e-7  # a step this small beside the first one will not recover
 
 
 @kernel
-def constitutive(i0, i1, z, number, law, dt, arrays, numbers):
-    """Density, rotation, stress, viscosity and energy of the particles of one material in a block.
-
-    The original program rotates by half the spin.
-    """
-    q = numbers.viscous[number]
-    material = arrays.material
-    gradient = arrays.gradient
-    stress = arrays.stress
-    s = arrays.s
-    density = arrays.density
-    state = arrays.state
-    for i in range(i0, i1):
-        if material[i] != number:
-            continue
-        if z is not None:
-            d_xx = gradient[0, i] * dt
-            d_yy = gradient[4, i] * dt
-            d_zz = gradient[8, i] * dt
-            d_xy = 0.5 * (gradient[1, i] + gradient[3, i]) * dt
-            d_yz = 0.5 * (gradient[5, i] + gradient[7, i]) * dt
-            d_zx = 0.5 * (gradient[6, i] + gradient[2, i]) * dt
-            w_xy = 0.5 * (gradient[1, i] - gradient[3, i]) * dt
-            w_yz = 0.5 * (gradient[5, i] - gradient[7, i]) * dt
-            w_zx = 0.5 * (gradient[6, i] - gradient[2, i]) * dt
-            o_xy = stress[3, i]
-            o_yz = stress[4, i]
-            o_zx = stress[5, i]
-        else:
-            d_xx = gradient[0, i] * dt
-            d_yy = gradient[3, i] * dt
-            d_zz = 0.0
-            d_xy = 0.5 * (gradient[1, i] + gradient[2, i]) * dt
-            d_yz = 0.0
-            d_zx = 0.0
-            w_xy = 0.5 * (gradient[1, i] - gradient[2, i]) * dt
-            w_yz = 0.0
-            w_zx = 0.0
-            o_xy = stress[3, i]
-            o_yz = 0.0
-            o_zx = 0.0
-        if numbers.original:
-            w_xy *= 0.5
-            w_yz *= 0.5
-            w_zx *= 0.5
-        o_xx = stress[0, i]
-        o_yy = stress[1, i]
-        o_zz = stress[2, i]
-        volumetric = d_xx + d_yy + d_zz
-        rho = min(max(density[i] * (1.0 - volumetric), q[2]), q[3])
-        r_xx, r_yy, r_zz, r_xy, r_yz, r_zx = spin_rotation(w_xy, w_yz, w_zx, o_xx, o_yy, o_zz, o_xy, o_yz, o_zx)
-        rotate_state(law, w_xy, w_yz, w_zx, state, i)
-        n_xx, n_yy, n_zz, n_xy, n_yz, n_zx, plastic = stress_update(
-            law, d_xx, d_yy, d_zz, d_xy, d_yz, d_zx, r_xx, r_yy, r_zz, r_xy, r_yz, r_zx,
-            rho, arrays.energy[i], dt, state, i,
+def strain(i0, i1, shape, solid, h, line, correction, density_rate, density_factor, stress_rate, stress_factor,
+           arrays, numbers):  # fmt: skip
+    """Velocity gradients of a range of particles, and the rates of diffusion, all with the old densities."""
+    pairs.velocity_gradient(
+        i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.x_half, arrays.y_half, solid, arrays.z_half,
+        arrays.u, arrays.v, arrays.w, arrays.volume, h, numbers.inverse_h2, numbers.scale, line, arrays.gradient,
+        correction,
+    )  # fmt: skip
+    if density_rate is not None:
+        cures.density_diffusion(
+            i0, i1, solid, shape, density_factor, arrays.x_half, arrays.y_half, arrays.z_half, arrays, numbers,
+            density_rate,
         )  # fmt: skip
-        viscosity = 0.0
-        if volumetric < 0.0:
-            closing = -volumetric / dt * arrays.h[i]
-            viscosity = rho * closing * (q[0] + q[1] * closing)
-        work = 0.5 * ((o_xx + n_xx) * d_xx + (o_yy + n_yy) * d_yy + (o_zz + n_zz) * d_zz)
-        work += (o_xy + n_xy) * d_xy + (o_yz + n_yz) * d_yz + (o_zx + n_zx) * d_zx
-        specific = 2.0 / (rho + density[i])
-        heat = -0.5 * (arrays.viscosity[i] + viscosity) * volumetric  # the mean over the step, as of the stress
-        arrays.viscosity[i] = viscosity
-        arrays.energy[i] += (work + heat) * specific
-        arrays.dissipated[i] += (plastic + heat) * specific
-        density[i] = rho
-        stress[0, i] = n_xx
-        stress[1, i] = n_yy
-        stress[2, i] = n_zz
-        stress[3, i] = n_xy
-        inverse = 1.0 if numbers.mixed else 1.0 / (rho * rho)
-        s[0, i] = (n_xx - viscosity) * inverse
-        s[1, i] = (n_yy - viscosity) * inverse
-        if z is not None:
-            stress[4, i] = n_yz
-            stress[5, i] = n_zx
-            s[2, i] = (n_zz - viscosity) * inverse
-            s[3, i] = n_xy * inverse
-            s[4, i] = n_yz * inverse
-            s[5, i] = n_zx * inverse
-        else:
-            s[2, i] = n_xy * inverse
+    if stress_rate is not None:
+        cures.stress_diffusion(
+            i0, i1, solid, shape, stress_factor, arrays.x_half, arrays.y_half, arrays.z_half, arrays, numbers,
+            stress_rate,
+        )  # fmt: skip
 
 
 @kernel
-def kick_and_drift(i0, i1, z, cx, kick, dt, arrays):
-    """v += a kick, x += v dt; directions in the mask `fixed` (bits x y z) do not move.
-
-    Returns the largest squared distance from where the list was built, and the index of a particle that moved further
-    than its smoothing length or whose velocity is not a number (-1: none).
-    """
-    x, y, u, v = arrays.x, arrays.y, arrays.u, arrays.v
-    largest = 0.0
-    bad = np.int64(-1)
-    for i in range(i0, i1):
-        fixed = arrays.fixed[i]
-        if fixed & 1:
-            arrays.ax[i] = 0.0
-            u[i] = 0.0
-        if fixed & 2:
-            arrays.ay[i] = 0.0
-            v[i] = 0.0
-        u[i] += arrays.ax[i] * kick
-        v[i] += arrays.ay[i] * kick
-        x[i] += u[i] * dt
-        y[i] += v[i] * dt
-        arrays.x_half[i] = x[i] - 0.5 * dt * u[i]
-        arrays.y_half[i] = y[i] - 0.5 * dt * v[i]
-        speed2 = u[i] * u[i] + v[i] * v[i]
-        moved2 = (x[i] - arrays.x_list[i]) ** 2 + (y[i] - arrays.y_list[i]) ** 2
-        if z is not None:
-            if fixed & 4:
-                arrays.az[i] = 0.0
-                arrays.w[i] = 0.0
-            arrays.w[i] += arrays.az[i] * kick
-            z[i] += arrays.w[i] * dt
-            arrays.z_half[i] = z[i] - 0.5 * dt * arrays.w[i]
-            speed2 += arrays.w[i] * arrays.w[i]
-            moved2 += (z[i] - arrays.z_list[i]) ** 2
-        if cx is not None:
-            power = cx[i] * u[i] + arrays.cy[i] * v[i]
-            if z is not None:
-                power += arrays.cz[i] * arrays.w[i]
-            arrays.contact_work[i] += 0.5 * dt * arrays.mass[i] * power
-        if not speed2 * dt * dt <= arrays.h[i] * arrays.h[i]:
-            bad = i
-        largest = max(largest, moved2)
-    return largest, float(bad)
-
-
-@kernel
-def critical_step(i0, i1, z, numbers, arrays):
-    """The smallest stable step of a block by the deck's option.
-
-    1 h/(c+|v|), 2 nearest distance/(c+|v|), 0 by viscosity.
-    """
-    option = numbers.step_option
-    viscous = numbers.viscous
-    least = np.inf
-    for i in range(i0, i1):
-        c = numbers.wave[arrays.material[i]]
-        speed2 = arrays.u[i] ** 2 + arrays.v[i] ** 2
-        if z is not None:
-            speed2 += arrays.w[i] ** 2
-        if option == 0:
-            length = (arrays.mass[i] / arrays.density[i]) ** (1.0 / numbers.dimension)
-            trace = arrays.gradient[0, i]
-            if z is not None:
-                trace += arrays.gradient[4, i] + arrays.gradient[8, i]
-            else:
-                trace += arrays.gradient[3, i]
-            m = arrays.material[i]
-            closing = max(0.0, -trace)
-            q = viscous[m, 0] + viscous[m, 1] * length * closing
-            least = min(least, length / (q + np.sqrt(q * q + c * c)))
-            if numbers.original:
-                continue
-            c = 0.0  # nor may a particle run past its neighbours
-        length = arrays.h[i]
-        if option == 2:
-            length = np.sqrt(arrays.nearest[i])
-            length = min(length, 2.0 * arrays.h[i])
-        least = min(least, length / (c + np.sqrt(speed2)))
-    return least
-
-
-@kernel
-def force(i0, i1, z, h, mass, nearest, line, cx, potential, mixed, dt, arrays, numbers):
+def force(i0, i1, shape, z, h, mass, nearest, line, cx, potential, mixed, correction, bx, artificial, heat, body_work,
+          dt, arrays, numbers):  # fmt: skip
     """Accelerations of a range of particles; returns their critical step."""
     if mixed is not None:
         weight = arrays.volume
@@ -214,45 +66,38 @@ def force(i0, i1, z, h, mass, nearest, line, cx, potential, mixed, dt, arrays, n
         density = None
         scale = numbers.force_scale
     pairs.momentum(
-        i0, i1, arrays.first, arrays.count, arrays.rows, arrays.x, arrays.y, z, arrays.s, weight, h,
-        numbers.inverse_h2, scale, line, numbers.body_x, numbers.body_y, numbers.body_z,
-        arrays.ax, arrays.ay, arrays.az, nearest, density,
+        i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.x, arrays.y, z, arrays.s, weight, h,
+        numbers.inverse_h2, scale, line, numbers.body, arrays.ax, arrays.ay, arrays.az, nearest, density, correction,
+        artificial, numbers.inverse_w, bx, arrays.by, arrays.bz,
     )  # fmt: skip
+    if heat is not None:
+        cures.pair_viscosity(i0, i1, z, shape, arrays, numbers, heat)
     if potential is not None:
-        pairs.contact_acceleration(
-            i0, i1, arrays.c_first, arrays.c_count, arrays.c_rows, arrays.x, arrays.y, z, arrays.mass, arrays.h,
+        across.contact_acceleration(
+            i0, i1, arrays.c_first, arrays.c_count, arrays.c_rows, shape, arrays.x, arrays.y, z, arrays.mass, arrays.h,
             -(numbers.dimension + 2.0), numbers.normal, arrays.material, numbers.strength, numbers.exponent,
             numbers.original, arrays.ax, arrays.ay, arrays.az, cx, arrays.cy, arrays.cz,
         )  # fmt: skip
-        for i in range(i0, i1):
-            power = cx[i] * arrays.u[i] + arrays.cy[i] * arrays.v[i]
-            if z is not None:
-                power += arrays.cz[i] * arrays.w[i]
-            arrays.contact_work[i] += 0.5 * dt * arrays.mass[i] * power
+    half_work(i0, i1, z, cx, bx, body_work, dt, arrays, numbers)
     return critical_step(i0, i1, z, numbers, arrays)
 
 
-def _each_law(laws, number, i0, i1, z, dt, arrays, numbers):
-    """`constitutive` for every body's law; a tuple of different types is unrolled by recursion."""
-    raise NotImplementedError("called from jitted code only")
-
-
-@overload(_each_law, jit_options=JIT_OPTIONS)
-def _unrolled(laws, number, i0, i1, z, dt, arrays, numbers):
-    if len(laws) == 0:
-        return lambda laws, number, i0, i1, z, dt, arrays, numbers: None
-
-    def each(laws, number, i0, i1, z, dt, arrays, numbers):
-        constitutive(i0, i1, z, number, laws[0], dt, arrays, numbers)
-        _each_law(laws[1:], number + 1, i0, i1, z, dt, arrays, numbers)
-
-    return each
+@kernel
+def body_force_at(time, numbers):
+    """Sets numbers.body by the table of the base acceleration, constant beyond its ends."""
+    times = numbers.body_times
+    k = min(max(np.searchsorted(times, time, side="right"), 1), len(times) - 1)
+    part = min(max((time - times[k - 1]) / (times[k] - times[k - 1]), 0.0), 1.0)
+    for axis in range(3):
+        before = numbers.body_values[k - 1, axis]
+        numbers.body[axis] = before + part * (numbers.body_values[k, axis] - before)
 
 
 @kernel
 def advance(
-    thread, threads, sync, n, solid, z, h, mass, nearest, line, cx, potential, mixed, arrays, numbers, laws, progress,
-    until, pause, steps, reach2,
+    thread, threads, sync, n, offset, shape, solid, z, h, mass, nearest, line, cx, potential, mixed, correction, bx,
+    artificial, h_list, h_start, density_rate, density_factor, stress_rate, stress_factor, heat, smoothed, smoothing,
+    body_work, image_source, image_sign, image_shift, arrays, numbers, laws, progress, until, pause, steps, reach2,
 ):  # fmt: skip
     """Take up to `steps` steps towards `until`, each thread for its own range; returns why it stopped.
 
@@ -275,26 +120,38 @@ def advance(
     while True:
         if pending:
             if last > 0.0:
+                if image_source is not None:
+                    g0, g1 = share(len(image_source), thread, threads)
+                    ghosts.follow_motion(g0, g1, offset, z, image_source, image_sign, image_shift, arrays)
+                    barrier(sync, threads)
                 c = claim(sync, taken)
                 while c < chunks:
-                    pairs.velocity_gradient(
-                        c * chunk, min(n, (c + 1) * chunk), arrays.first, arrays.count, arrays.rows, arrays.x_half,
-                        arrays.y_half, solid, arrays.z_half, arrays.u, arrays.v, arrays.w, arrays.volume, h,
-                        numbers.inverse_h2, numbers.scale, line, arrays.gradient,
+                    strain(
+                        c * chunk, min(n, (c + 1) * chunk), shape, solid, h, line, correction, density_rate,
+                        density_factor, stress_rate, stress_factor, arrays, numbers,
                     )  # fmt: skip
                     c = claim(sync, taken)
                 taken += chunks + threads
                 barrier(sync, threads)  # the strain of all particles needs the old volumes
-                _each_law(laws, 0, i0, i1, z, last, arrays, numbers)
+                each_law(
+                    laws, 0, i0, i1, z, last, correction, h_start, density_rate, stress_rate, heat, arrays, numbers
+                )
                 for i in range(i0, i1):
                     arrays.volume[i] = arrays.mass[i] / arrays.density[i]
+                barrier(sync, threads)
+                if image_source is not None:
+                    ghosts.follow_stress(g0, g1, offset, z, correction, image_source, image_sign, arrays)
+                    barrier(sync, threads)
+            if body_work is not None and thread == 0:
+                body_force_at(time, numbers)
+            if body_work is not None:
                 barrier(sync, threads)
             least = np.inf
             c = claim(sync, taken)
             while c < chunks:
                 part = force(
-                    c * chunk, min(n, (c + 1) * chunk), z, h, mass, nearest, line, cx, potential, mixed, last,
-                    arrays, numbers,
+                    c * chunk, min(n, (c + 1) * chunk), shape, z, h, mass, nearest, line, cx, potential, mixed,
+                    correction, bx, artificial, heat, body_work, last, arrays, numbers,
                 )  # fmt: skip
                 least = min(least, part)
                 c = claim(sync, taken)
@@ -323,7 +180,22 @@ def advance(
             if whole <= LANDING:
                 now = left / whole
                 landed = whole == 1
-        moved, bad = kick_and_drift(i0, i1, z, cx, 0.5 * (last + now), now, arrays)
+        kick(i0, i1, z, cx, bx, body_work, 0.5 * (last + now), now, arrays, numbers)
+        if smoothed is not None:
+            barrier(sync, threads)
+            if image_source is not None:
+                g0, g1 = share(len(image_source), thread, threads)
+                ghosts.follow_motion(g0, g1, offset, z, image_source, image_sign, image_shift, arrays)
+                barrier(sync, threads)
+            c = claim(sync, taken)
+            while c < chunks:
+                cures.smoothed_velocity(
+                    c * chunk, min(n, (c + 1) * chunk), z, shape, smoothing, arrays, numbers, smoothed
+                )
+                c = claim(sync, taken)
+            taken += chunks + threads
+            barrier(sync, threads)
+        moved, bad = drift(i0, i1, z, smoothed, h_list, 0.5 * shape.support, now, arrays)
         arrays.reduced[thread, 0] = moved
         arrays.reduced[thread, 1] = bad
         barrier(sync, threads)
