@@ -22,16 +22,20 @@ def _volume_factor(mean, dimension):
 
 
 @kernel
-def density_diffusion(i0, i1, z, shape, factor, wave, x, y, zs, arrays, numbers, rate):
+def density_diffusion(i0, i1, z, shape, x, y, zs, arrays, numbers, rate):
     """rate_i = factor h c sum_j 2 V_j (rho_j - rho_i - rho_i g.(x_j - x_i)/c^2)(x_j - x_i).grad_i W_ij / r^2.
 
     Delta-SPH (Molteni & Colagrossi 2009) with the hydrostatic part taken out (Fourtakas et al. 2019), so that a column
-    at rest keeps its surface; among particles of one material.
+    at rest keeps its surface; among particles of one material, which has a factor of its own.
     """
     body = numbers.body
     for i in range(i0, i1):
         m = arrays.material[i]
+        factor = numbers.density_diffusion[m]
         total = 0.0
+        if factor == 0.0:
+            rate[i] = 0.0
+            continue
         rho = arrays.density[i]
         c = numbers.wave[m]
         inverse_c2 = rho / (c * c)
@@ -56,7 +60,7 @@ def density_diffusion(i0, i1, z, shape, factor, wave, x, y, zs, arrays, numbers,
 
 
 @kernel
-def stress_diffusion(i0, i1, z, shape, factor, x, y, zs, arrays, numbers, rate):
+def stress_diffusion(i0, i1, z, shape, x, y, zs, arrays, numbers, rate):
     """rate_i = factor h c sum_j 2 V_j (sigma_j - sigma_i - head)(x_j - x_i).grad_i W_ij / r^2, all components.
 
     Regularises the stress of grain (Nguyen et al. 2017; Feng et al. 2021), which else falls apart into stripes. head:
@@ -66,6 +70,10 @@ def stress_diffusion(i0, i1, z, shape, factor, x, y, zs, arrays, numbers, rate):
     stress = arrays.stress
     for i in range(i0, i1):
         m = arrays.material[i]
+        factor = numbers.stress_diffusion[m]
+        if factor == 0.0:
+            rate[:, i] = 0.0
+            continue
         t_xx = 0.0
         t_yy = 0.0
         t_zz = 0.0

@@ -22,7 +22,8 @@ class Body:
 
     number: of the deck; law: of `zrno.solvers.materials`; density [mass/length^3]; linear, quadratic: artificial
     viscosity by the rate of volume [-]; least, most: limits of the density; strength, exponent: of the repulsive
-    contact; alpha, beta: of Monaghan's pair viscosity [-].
+    contact; alpha, beta: of Monaghan's pair viscosity [-]; density_diffusion: delta-SPH for fluids (0.1);
+    stress_diffusion: regularised stress of grain (0.1).
     """
 
     number: int
@@ -37,6 +38,8 @@ class Body:
     exponent: float = 0.0
     alpha: float = 0.0
     beta: float = 0.0
+    density_diffusion: float = 0.0
+    stress_diffusion: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,14 +47,11 @@ class Cures:
     """Remedies of the method's known defects; off unless asked for.
 
     correction: gradients exact for linear fields, at free surfaces and in disorder; artificial_stress: factor against
-    tension instability (0.2 .. 0.5); density_diffusion: delta-SPH for fluids (0.1); stress_diffusion: regularised
-    stress of grain (0.1); xsph: particles move with the mean velocity, factor 0 .. 1.
+    tension instability (0.2 .. 0.5); xsph: particles move with the mean velocity, factor 0 .. 1.
     """
 
     correction: bool = False
     artificial_stress: float = 0.0
-    density_diffusion: float = 0.0
-    stress_diffusion: float = 0.0
     xsph: float = 0.0
 
 

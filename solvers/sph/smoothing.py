@@ -88,7 +88,7 @@ _NORMAL: dict[type, tuple[float, float, float]] = {
     Cubic: (1.0, 15.0 / (7.0 * _PI), 3.0 / (2.0 * _PI)),
     Quintic: (1.0 / 120.0, 7.0 / (478.0 * _PI), 1.0 / (120.0 * _PI)),
     Lucy: (5.0 / 4.0, 5.0 / _PI, 105.0 / (16.0 * _PI)),
-    Gaussian: tuple(_PI ** (-0.5 * d) / _CUT[d - 1] for d in (1, 2, 3)),  # type: ignore[dict-item]
+    Gaussian: tuple(_PI ** (-0.5 * d) / _CUT[d - 1] for d in (1, 2, 3)),
     WendlandC2Line: (5.0 / 8.0, math.nan, math.nan),
     WendlandC2: (math.nan, 7.0 / (4.0 * _PI), 21.0 / (16.0 * _PI)),
     WendlandC4Line: (3.0 / 4.0, math.nan, math.nan),
@@ -237,3 +237,15 @@ def _value_of(shape, q):
 @overload(shape_slope, jit_options=_OPTIONS)
 def _slope_of(shape, q, inverse_q):
     return _BODIES[shape.instance_class][1] if isinstance(shape, types.BaseNamedTuple) else None
+
+
+@kernel
+def value_at(shape, q):
+    """`shape_value` for Python."""
+    return shape_value(shape, q)
+
+
+@kernel
+def slope_at(shape, q):
+    """`shape_slope` for Python."""
+    return shape_slope(shape, q, 1.0 / q)

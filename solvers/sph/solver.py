@@ -16,13 +16,12 @@ from numpy.typing import NDArray
 
 from ..errors import Diverged
 from ..frame import Frame
-from ..jit import kernel
 from ..materials import PLASTIC_STRAIN, sound_speed, state_rows
 from ..neighbours import FAR, Cells, NeighbourList
 from ..threads import available, run
 from . import across, ghosts, measures, step
 from .problem import STEP_OPTIONS, Problem
-from .smoothing import normaliser, shape_of, shape_value
+from .smoothing import normaliser, shape_of, value_at
 from .state import Arrays, Numbers, Rows, State
 
 SKIN = 0.25  # of the largest h: the list's spare radius
@@ -31,11 +30,6 @@ CREATED = 3.0  # so many times the energy put in cannot come out of a stable run
 SMALL = 2000  # fewer particles run on one thread: a parallel region costs more than it saves
 
 Floats = NDArray[np.float64]
-
-
-@kernel
-def _value(shape, q):
-    return shape_value(shape, q)
 
 
 class Solver:
@@ -61,8 +55,8 @@ class Solver:
             correction=cures.correction,
             artificial=cures.artificial_stress > 0.0,
             heat=self._heats,
-            density_rate=cures.density_diffusion > 0.0,
-            stress_rate=cures.stress_diffusion > 0.0,
+            density_rate=any(b.density_diffusion for b in problem.bodies),
+            stress_rate=any(b.stress_diffusion for b in problem.bodies),
             xsph=cures.xsph > 0.0,
             changing_h=problem.h_option != 0,
             body_work=problem.body_curve is not None,
@@ -122,7 +116,9 @@ class Solver:
             h_option=p.h_option,
             relaxation=p.relaxation,
             pair_viscosity=np.array([(b.alpha, b.beta) for b in p.bodies]),
-            inverse_w=1.0 / _value(self._shape, spacing),
+            density_diffusion=np.array([b.density_diffusion for b in p.bodies]),
+            stress_diffusion=np.array([b.stress_diffusion for b in p.bodies]),
+            inverse_w=1.0 / value_at(self._shape, spacing),
             step_option=p.step_option,
             step_factor=p.step_factor,
             original=p.original,
@@ -177,8 +173,8 @@ class Solver:
         said = {
             "gradient correction": cures.correction,
             f"artificial stress {cures.artificial_stress:g}": cures.artificial_stress > 0.0,
-            f"density diffusion {cures.density_diffusion:g}": cures.density_diffusion > 0.0,
-            f"stress diffusion {cures.stress_diffusion:g}": cures.stress_diffusion > 0.0,
+            "density diffusion": self._has.density_rate,
+            "stress diffusion": self._has.stress_rate,
             f"XSPH {cures.xsph:g}": cures.xsph > 0.0,
             "pair viscosity": self._heats,
             f"h option {p.h_option}": p.h_option != 0,
@@ -260,9 +256,7 @@ class Solver:
                 a.h_list,
                 a.h_start,
                 a.density_rate,
-                cures.density_diffusion,
                 a.stress_rate if has.stress_rate else None,
-                cures.stress_diffusion,
                 a.heat,
                 a.smoothed if has.xsph else None,
                 cures.xsph,
@@ -490,11 +484,11 @@ class Solver:
         """One row of history.csv: energies, momentum, the contact force on the first material.
 
         `internal` is elastic and dissipated energy together, `dissipated` the part that plastic flow and viscosity
-        took; kinetic + internal + contact_energy - external_work stays constant.
+        took; kinetic + internal + contact_energy + artificial_energy - external_work stays constant.
         """
         s, n = self._state, self.n
         energies = self._energies()
-        contact_energy = energies.pop("contact_energy")
+        stored = {name: energies.pop(name) for name in ("contact_energy", "artificial_energy")}
         momentum = np.zeros(3)
         momentum[: s.d] = (self._velocity() * s.rows("mass")[0, :n]).sum(axis=1)
         force = self._contact_force()
@@ -506,7 +500,7 @@ class Solver:
             **dict(zip(("momentum_x", "momentum_y", "momentum_z"), momentum.tolist(), strict=True)),
             **dict(zip(("contact_force_x", "contact_force_y", "contact_force_z"), force.tolist(), strict=True)),
             "active": float(self.live),
-            "contact_energy": contact_energy,
+            **stored,
             "max_plastic_strain": float(plastic.max()),
             "step": float(self.step),
         }
@@ -521,7 +515,7 @@ class Solver:
         scale = max(start["kinetic"], now["kinetic"], abs(now["internal"]), abs(now["external_work"]), 1e-300)
         return {
             "initial": start["kinetic"] + start["internal"],
-            "final": now["kinetic"] + now["internal"] + now["contact_energy"],
+            "final": now["kinetic"] + now["internal"] + now["contact_energy"] + now["artificial_energy"],
             "kinetic": now["kinetic"],
             "internal": now["internal"],
             "external_work": now["external_work"],

@@ -90,7 +90,8 @@ class Numbers(NamedTuple):
     all are equal; normal: a_d. viscous: (bodies, 4) linear coefficient times c, quadratic, density limits; wave:
     (bodies,) speeds; strength, exponent: (bodies,) of the contact. body: (3,) acceleration now, by the table
     body_times (k,), body_values (k, 3). h_option: as the deck's. relaxation: factor of the velocities in each step.
-    pair_viscosity: (bodies, 2) alpha and beta; inverse_w: 1/W at the particles' spacing.
+    pair_viscosity: (bodies, 2) alpha and beta; density_diffusion, stress_diffusion: (bodies,)
+    factors; inverse_w: 1/W at the particles' spacing.
     """
 
     dimension: int
@@ -106,6 +107,8 @@ class Numbers(NamedTuple):
     h_option: int
     relaxation: float
     pair_viscosity: Any
+    density_diffusion: Any
+    stress_diffusion: Any
     inverse_w: float
     step_option: int
     step_factor: float

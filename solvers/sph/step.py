@@ -33,8 +33,7 @@ COLLAPSE = 1e-7  # a step this small beside the first one will not recover
 
 
 @kernel
-def strain(i0, i1, shape, solid, h, line, correction, density_rate, density_factor, stress_rate, stress_factor,
-           arrays, numbers):  # fmt: skip
+def strain(i0, i1, shape, solid, h, line, correction, density_rate, stress_rate, arrays, numbers):
     """Velocity gradients of a range of particles, and the rates of diffusion, all with the old densities."""
     pairs.velocity_gradient(
         i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.x_half, arrays.y_half, solid, arrays.z_half,
@@ -43,12 +42,12 @@ def strain(i0, i1, shape, solid, h, line, correction, density_rate, density_fact
     )  # fmt: skip
     if density_rate is not None:
         cures.density_diffusion(
-            i0, i1, solid, shape, density_factor, arrays.x_half, arrays.y_half, arrays.z_half, arrays, numbers,
+            i0, i1, solid, shape, arrays.x_half, arrays.y_half, arrays.z_half, arrays, numbers,
             density_rate,
         )  # fmt: skip
     if stress_rate is not None:
         cures.stress_diffusion(
-            i0, i1, solid, shape, stress_factor, arrays.x_half, arrays.y_half, arrays.z_half, arrays, numbers,
+            i0, i1, solid, shape, arrays.x_half, arrays.y_half, arrays.z_half, arrays, numbers,
             stress_rate,
         )  # fmt: skip
 
@@ -96,8 +95,8 @@ def body_force_at(time, numbers):
 @kernel
 def advance(
     thread, threads, sync, n, offset, shape, solid, z, h, mass, nearest, line, cx, potential, mixed, correction, bx,
-    artificial, h_list, h_start, density_rate, density_factor, stress_rate, stress_factor, heat, smoothed, smoothing,
-    body_work, image_source, image_sign, image_shift, arrays, numbers, laws, progress, until, pause, steps, reach2,
+    artificial, h_list, h_start, density_rate, stress_rate, heat, smoothed, smoothing, body_work, image_source,
+    image_sign, image_shift, arrays, numbers, laws, progress, until, pause, steps, reach2,
 ):  # fmt: skip
     """Take up to `steps` steps towards `until`, each thread for its own range; returns why it stopped.
 
@@ -128,7 +127,7 @@ def advance(
                 while c < chunks:
                     strain(
                         c * chunk, min(n, (c + 1) * chunk), shape, solid, h, line, correction, density_rate,
-                        density_factor, stress_rate, stress_factor, arrays, numbers,
+                        stress_rate, arrays, numbers,
                     )  # fmt: skip
                     c = claim(sync, taken)
                 taken += chunks + threads

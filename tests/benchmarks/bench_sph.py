@@ -22,7 +22,7 @@ import numpy as np  # noqa: E402  (the clock starts before the imports)
 from zrno.solvers.jit import compile_seconds  # noqa: E402
 from zrno.solvers.materials import Elastic  # noqa: E402
 from zrno.solvers.neighbours import Cells  # noqa: E402
-from zrno.solvers.sph import Body, Problem, Solver, pairs, step  # noqa: E402
+from zrno.solvers.sph import Body, Problem, Solver, pairs, particle  # noqa: E402
 
 STEPS = 100
 
@@ -73,26 +73,31 @@ def phases(problem: Problem, builds: float) -> dict[str, float]:
     s.advance(1e9, 60)
     a, k, n = s._arrays(), s._numbers, s.n
     law = s._laws[0]
+    radius = s._shape.support * float(problem.h.max())
     assert a.x_list is not None
-    cells = Cells(n, a.x_list, a.y_list, a.z_list, s._radius + s._skin)
+    cells = Cells(n, a.x_list, a.y_list, a.z_list, radius + s._skin)
     return {
         "velocity gradient": nanoseconds(
             lambda: pairs.velocity_gradient(
-                0, n, a.first, a.count, a.rows, a.x_half, a.y_half, True, a.z_half, a.u, a.v, a.w, a.volume, None,
-                k.inverse_h2, k.scale, None, a.gradient,
+                0, n, a.first, a.count, a.rows, s._shape, a.x_half, a.y_half, True, a.z_half, a.u, a.v, a.w, a.volume,
+                None, k.inverse_h2, k.scale, None, a.gradient, None,
             ), n),
         "momentum": nanoseconds(
             lambda: pairs.momentum(
-                0, n, a.first, a.count, a.rows, a.x, a.y, a.z, a.s, None, None, k.inverse_h2, k.force_scale, None,
-                0.0, 0.0, 0.0, a.ax, a.ay, a.az, a.nearest, None,
+                0, n, a.first, a.count, a.rows, s._shape, a.x, a.y, a.z, a.s, None, None, k.inverse_h2, k.force_scale,
+                None, k.body, a.ax, a.ay, a.az, a.nearest, None, None, None, 1.0, None, None, None,
             ), n),
-        "stress": sum(nanoseconds(lambda m=m: step.constitutive(0, n, a.z, m, law, 1e-12, a, k), n) for m in (0, 1)),
-        "critical step": nanoseconds(lambda: step.critical_step(0, n, a.z, k, a), n),
-        "kick and drift": nanoseconds(lambda: step.kick_and_drift(0, n, a.z, None, 1e-15, 1e-15, a), n),
+        "stress": sum(
+            nanoseconds(
+                lambda m=m: particle.constitutive(0, n, a.z, m, law, 1e-12, None, None, None, None, None, a, k), n)
+            for m in (0, 1)),
+        "critical step": nanoseconds(lambda: particle.critical_step(0, n, a.z, k, a), n),
+        "kick": nanoseconds(lambda: particle.kick(0, n, a.z, None, None, None, 1e-15, 1e-15, a, k), n),
+        "drift": nanoseconds(lambda: particle.drift(0, n, a.z, None, None, 1.0, 1e-15, a), n),
         "list": builds * nanoseconds(
-            lambda: s._list.build(cells, a.x_list, a.y_list, a.z_list, radius=s._radius, skin=s._skin), n),
+            lambda: s._list.build(cells, a.x_list, a.y_list, a.z_list, radius=radius, skin=s._skin), n),
         "cells and sort": builds * nanoseconds(
-            lambda: s._state.sort(Cells(n, a.x_list, a.y_list, a.z_list, s._radius + s._skin).order, 1), n),
+            lambda: s._state.sort(Cells(n, a.x_list, a.y_list, a.z_list, radius + s._skin).order, 1), n),
     }  # fmt: skip
 
 

@@ -2,31 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from zrno.solvers.jit import kernel
 from zrno.solvers.sph.smoothing import (
     NAMES,
     inverse_root,
     normaliser,
     shape_of,
-    shape_slope,
-    shape_value,
+    slope_at,
+    value_at,
 )
-
-
-@kernel
-def value(shape: Any, q: float) -> Any:
-    return shape_value(shape, q)
-
-
-@kernel
-def slope(shape: Any, q: float) -> Any:
-    return shape_slope(shape, q, 1.0 / q)
 
 
 @pytest.mark.parametrize("dimension", [1, 2, 3])
@@ -35,7 +22,7 @@ def test_the_integral_is_one(name: str, dimension: int) -> None:
     shape = shape_of(name, dimension)
     shell = {1: lambda q: 2.0, 2: lambda q: 2.0 * np.pi * q, 3: lambda q: 4.0 * np.pi * q * q}[dimension]
     total, _ = quad(
-        lambda q: normaliser(shape, dimension) * value(shape, q) * shell(q), 0.0, shape.support,
+        lambda q: normaliser(shape, dimension) * value_at(shape, q) * shell(q), 0.0, shape.support,
         points=[1.0, 2.0][: int(shape.support) - 1] or None, epsabs=1e-13,
     )  # fmt: skip
     assert total == pytest.approx(1.0, abs=1e-10)
@@ -47,9 +34,14 @@ def test_the_slope_is_the_derivative_and_nothing_reaches_beyond_the_support(name
     shape = shape_of(name, dimension)
     for q in np.array([0.02, 0.2, 0.499, 0.501, 0.85, 0.999]) * shape.support:
         step = 1e-6
-        numeric = (value(shape, q + step) - value(shape, q - step)) / (2.0 * step)
-        assert slope(shape, q) * q == pytest.approx(numeric, rel=1e-6, abs=1e-8 * value(shape, 0.0))
-    assert value(shape, shape.support) == value(shape, 1.5 * shape.support) == slope(shape, 1.2 * shape.support) == 0.0
+        numeric = (value_at(shape, q + step) - value_at(shape, q - step)) / (2.0 * step)
+        assert slope_at(shape, q) * q == pytest.approx(numeric, rel=1e-6, abs=1e-8 * value_at(shape, 0.0))
+    assert (
+        value_at(shape, shape.support)
+        == value_at(shape, 1.5 * shape.support)
+        == slope_at(shape, 1.2 * shape.support)
+        == 0.0
+    )
 
 
 def test_an_unknown_kernel_is_refused_with_the_names_there_are() -> None:
