@@ -243,6 +243,30 @@ def test_help_settings_is_yaml(capsys: pytest.CaptureFixture[str]) -> None:
     assert "end_time" in yaml.safe_load(out)
 
 
+@pytest.mark.parametrize(
+    ("words", "head"),
+    [
+        ([], b"4.1 0 8\n"),
+        (["--msh", "2.2"], b"2.2 0 8\n"),
+        (["--binary"], b"4.1 1 8\n\x01\0\0\0"),
+        (["--binary", "--msh", "2.2"], b"2.2 1 8\n\x01\0\0\0"),
+    ],
+)
+def test_convert_writes_the_mesh_asked_for(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, words: list[str], head: bytes
+) -> None:
+    source, target = tmp_path / "a.k", tmp_path / "b.msh"
+    source.write_text("*KEYWORD\n*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n*ELEMENT_SHELL\n1,1,1,2,3,3\n*END\n")
+    assert _call(capsys, "convert", str(source), str(target), *words)[0] == 0
+    assert target.read_bytes().startswith(b"$MeshFormat\n" + head)
+    code, out, _ = _call(capsys, "info", str(target), "--json")
+    assert (code, json.loads(out)["elements"]) == (0, {"tri3": 1})
+    if words:
+        code, _, err = _call(capsys, "convert", str(source), str(tmp_path / "b.vtu"), *words)
+        assert code == 2
+        assert "are for .msh meshes" in err
+
+
 def test_convert_says_what_only_particle_decks_take(capsys: pytest.CaptureFixture[str], sample: Path) -> None:
     code, _, err = _call(
         capsys, "convert", str(sample / "cylinders.geo"), str(sample / "c.vtu"), "--particles", "nodes"
