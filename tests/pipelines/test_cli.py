@@ -15,6 +15,7 @@ import pytest
 from zrno.pipelines import cli, console
 from zrno.pipelines.errors import Missing, RunFailed
 from zrno.solvers.errors import Diverged
+from zrno.translators import read
 
 ZRNO = [sys.executable, "-c", "from zrno.pipelines.cli import main; main()"]
 
@@ -265,6 +266,35 @@ def test_convert_writes_the_mesh_asked_for(
         code, _, err = _call(capsys, "convert", str(source), str(tmp_path / "b.vtu"), *words)
         assert code == 2
         assert "are for .msh meshes" in err
+
+
+def test_water_in_a_box_of_a_script_and_settings_alone(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """The settings that the page on .mcm decks shows."""
+    page = (Path(__file__).parents[2] / "translators" / "pages" / "mcm.md").read_text()
+    (tmp_path / "tank.yaml").write_text(page.split("```yaml\n")[1].split("```")[0])
+    (tmp_path / "tank.geo").write_text(
+        'SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 1, 0.5, 0.6}; Physical Volume("water", 1) = {1};'
+    )
+    deck = tmp_path / "tank.mcm"
+    words = [str(tmp_path / "tank.geo"), str(deck), "--settings", str(tmp_path / "tank.yaml"), "--spacing", "0.1"]
+    assert _call(capsys, "convert", *words)[0] == 0
+    model = read(deck)
+    assert (model.materials[1].law, len(model.particles)) == ("fluid", 300)
+    assert model.equations_of_state[model.materials[1].eos].parameters["B"] == 5e4
+    assert model.particle_control.planes == [(1, 0.0), (1, 1.0), (0, 0.0), (0, 0.0), (1, 0.0), (0, 0.0)]
+
+
+def test_a_reader_that_has_enough(tmp_path: Path) -> None:
+    (tmp_path / "a.k").write_text("*KEYWORD\n*NODE\n1,0,0,0\n*END\n")
+    code = "import sys; sys.argv = ['zrno', 'info', 'a.k']\nfrom zrno.pipelines.cli import main\nmain()"
+    with subprocess.Popen(
+        [sys.executable, "-c", code], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as run:
+        assert run.stdout is not None
+        assert run.stderr is not None
+        run.stdout.close()
+        said = run.stderr.read().decode()
+    assert (run.returncode, said) == (1, "")
 
 
 def test_convert_says_what_only_particle_decks_take(capsys: pytest.CaptureFixture[str], sample: Path) -> None:
