@@ -273,11 +273,12 @@ def test_water_in_a_box_of_a_script_and_settings_alone(capsys: pytest.CaptureFix
     page = (Path(__file__).parents[2] / "translators" / "pages" / "mcm.md").read_text()
     (tmp_path / "tank.yaml").write_text(page.split("```yaml\n")[1].split("```")[0])
     (tmp_path / "tank.geo").write_text(
-        'SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 1, 0.5, 0.6}; Physical Volume("water", 1) = {1};'
+        'SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 1, 0.5, 0.6}; Physical Volume("water", 1) = {1};\n'
     )
     deck = tmp_path / "tank.mcm"
     words = [str(tmp_path / "tank.geo"), str(deck), "--settings", str(tmp_path / "tank.yaml"), "--spacing", "0.1"]
-    assert _call(capsys, "convert", *words)[0] == 0
+    code, _, err = _call(capsys, "convert", *words)
+    assert code == 0, err
     model = read(deck)
     assert (model.materials[1].law, len(model.particles)) == ("fluid", 300)
     assert model.equations_of_state[model.materials[1].eos].parameters["B"] == 5e4
