@@ -46,6 +46,13 @@ class Dialect(StrEnum):
     v2019_10 = "2019-10"
 
 
+class MshVersion(StrEnum):
+    """Versions of the .msh mesh."""
+
+    v4_1 = "4.1"
+    v2_2 = "2.2"
+
+
 def main() -> None:
     """The program `zrno`."""
     try:
@@ -91,6 +98,8 @@ def convert(
     spacing: Annotated[float | None, typer.Option(metavar="H", help="Of particles; default: the median edge.")] = None,
     settings: Annotated[Path | None, typer.Option(metavar="FILE.yaml", help="What a mesh does not carry.")] = None,
     dialect: Annotated[Dialect | None, typer.Option(help="Of the .mcm written.")] = None,
+    msh: Annotated[MshVersion | None, typer.Option(help="Version of the .msh written; default: 4.1.")] = None,
+    binary: Annotated[bool, typer.Option("--binary", help="Write the .msh in binary, not as text.")] = False,
     strict: Annotated[bool, typer.Option("--strict", help="What the target cannot say is an error.")] = False,
     allow_outside: AllowOutside = False,
     help_settings: Annotated[
@@ -116,6 +125,8 @@ def convert(
             parts=part or (),
             settings=load_settings(settings) if settings else None,
             dialect=dialect.value if dialect else None,
+            msh=msh.value if msh else None,
+            binary=binary,
             strict=strict,
             allow_outside=allow_outside,
         )

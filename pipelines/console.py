@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 import traceback
 from collections.abc import Callable, Iterator
@@ -67,6 +68,9 @@ def command(stop: Callable[[int], Exception], *, json: bool, verbose: bool, quie
         yield console
     except KeyboardInterrupt:
         _fail(console, INTERRUPTED, ["interrupted"])
+    except BrokenPipeError:  # of `zrno info mesh.k | head`: who reads has enough, and what is left goes nowhere
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        console.code = FAILED
     except Exception as error:
         code, lines = explain(error)
         if verbose:

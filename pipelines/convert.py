@@ -28,6 +28,8 @@ def convert(
     settings: Settings | None = None,
     numbers: Mapping[str, float] | None = None,
     dialect: str | None = None,
+    msh: str | None = None,
+    binary: bool = False,
     strict: bool = False,
     allow_outside: bool = False,
 ) -> dict[str, Any]:
@@ -35,8 +37,9 @@ def convert(
 
     A mesh becomes particles where the target is a particle deck (particles, spacing, parts and settings say how), and a
     finite element model where it is a FEM deck. parts: of any mesh, only these. numbers: parameters of a .geo script.
-    dialect: of the .mcm that is written. strict: what the target cannot say is an error. allow_outside: files that a
-    source includes may stand outside its folder. Raises InputError and ValueError; nothing is written then.
+    dialect: of the .mcm that is written. msh, binary: version and encoding of the .msh that is written. strict: what
+    the target cannot say is an error. allow_outside: files that a source includes may stand outside its folder. Raises
+    InputError and ValueError; nothing is written then.
     """
     models = [_read(source, numbers, allow_outside=allow_outside) for source in sources]
     lacking = [what for model in models for what in model.incomplete]
@@ -50,6 +53,10 @@ def convert(
     kind = target.suffix.lower()
     if dialect is not None and kind != ".mcm":
         raise ValueError(f"{target}: a dialect is for .mcm decks")
+    if (msh is not None or binary) and kind != ".msh":
+        raise ValueError(f"{target}: --msh and --binary are for .msh meshes")
+    options: dict[str, Any] = {} if dialect is None else {"dialect": dialect}
+    options |= ({} if msh is None else {"version": msh}) | ({"binary": True} if binary else {})
     if kind == ".mcm" and model.particles is None:
         model, made = to_particles(model, settings or load_settings(), particles, spacing, list(parts) or None)
         report.extend(made)
@@ -63,7 +70,7 @@ def convert(
             report.extend(made)
         elif settings is not None:
             raise ValueError("--settings make a deck (.mcm or .dat) of a mesh")
-    report.extend(_write(model, target, {} if dialect is None else {"dialect": dialect}, report if strict else None))
+    report.extend(_write(model, target, options, report if strict else None))
     return {
         "source": source,
         "target": model.summary() | {"format": target.suffix.lower().lstrip(".")},

@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from zrno.translators import held
 from zrno.translators.law_maps import as_known
-from zrno.translators.materials import ANY, materials_of, settings_of
+from zrno.translators.materials import NEED_EQUATION, equation_of_state, materials_of, settings_of
 from zrno.translators.mcm.cards import LAWS as MCM_LAWS
-from zrno.translators.model import PARTICLE_FAMILIES, Eos, Material, Model, Part, ParticleControl, Particles
+from zrno.translators.model import PARTICLE_FAMILIES, Eos, Material, Model, Part, Particles
+from zrno.translators.particle_control import particle_control
 from zrno.translators.particles import Filling, chosen_parts, copy_nodes, fill, on_shells, own_particles
 from zrno.translators.real_text import real_text
 from zrno.translators.report import Report
 from zrno.translators.sections import thickness_of
 from zrno.translators.settings import Settings
 
-FRAMES, ROWS = 20, 200  # of output and history where the settings give no interval
 _NEAREST_DISTANCE = 2
 _NONE_WHERE_0 = ("failure_strain",)
 _KNOWN = {name: law.parameters for name, law in MCM_LAWS.items()}
@@ -59,17 +60,20 @@ def to_particles(
     number = owner[place]
     entries = [settings_of(settings, model, part)[1] for part in chosen]
     bc, velocity = held.of_particles(model, filling, chosen, entries, report)
+    _equations_of_state(model, target, chosen, materials, settings)
     target.particles = Particles(filling.x, number, bc, velocity if velocity.any() else None)
     mass = _masses(filling, np.array([materials[part].density for part in chosen])[number - 1])
     h = np.zeros(len(chosen))
     for part, k in numbers.items():
         own = mass[number == k]
         h[k - 1] = _smoothing_length(model, part, filling, settings)
-        target.materials[k] = _material(model.parts[part], k, materials[part], own, h[k - 1], settings, target)
+        entry = entries[k - 1] or {}
+        target.materials[k] = _material(model.parts[part], k, materials[part], own, h[k - 1], settings, entry)
+        target.materials[k].eos = k if k in target.equations_of_state else None
     uneven = any(np.ptp(mass[number == k]) > 1e-9 * mass[number == k].max() for k in numbers.values())
     if uneven or any(not _fits(material.mass) for material in target.materials.values()):
         target.particles.mass = mass
-    target.particle_control = _control(model, target, settings, dimension, report)
+    target.particle_control = particle_control(model, target, settings, dimension, report)
     _report_lost(model, chosen, filling, report)
     report.notes.append(f"{len(filling.x)} particles in {len(chosen)} part(s)")
     if particles != "nodes" and settings["step_option"] == _NEAREST_DISTANCE and len(chosen) > 1:
@@ -168,14 +172,28 @@ def _smoothing_length(model: Model, part: int, filling: Filling, settings: Setti
     section = model.sections.get(model.parts[part].section or 0)
     own = {} if section is None else section.parameters
     factor = settings["h_factor"]
-    h = factor * filling.spacing[part]
-    if not settings.gives("h_factor"):
+    entry = settings_of(settings, model, part)[1]
+    given = entry is not None and entry["h_factor"] is not None
+    h = (entry["h_factor"] if entry is not None and given else factor) * filling.spacing[part]
+    if not given and not settings.gives("h_factor"):
         h = own.get("h") or own.get("h_factor", factor) * filling.spacing[part]
     return float(real_text(h, 10)[0])
 
 
+def _equations_of_state(
+    model: Model, target: Model, chosen: list[int], materials: dict[int, Material], settings: Settings
+) -> None:
+    """The equation of state of each part's material that needs one, by the material's number in the deck."""
+    for number, part in enumerate(chosen, 1):
+        found = equation_of_state(settings, model, part, materials[part])
+        if found is not None and materials[part].law in NEED_EQUATION:
+            name = found.name or model.parts[part].name
+            target.equations_of_state[number] = replace(found, id=number, name=name)
+    settings.stop()
+
+
 def _material(
-    part: Part, number: int, own: Material, mass: Any, h: float, settings: Settings, target: Model
+    part: Part, number: int, own: Material, mass: Any, h: float, settings: Settings, entry: Mapping[str, Any]
 ) -> Material:
     viscosity = settings["viscosity"]
     return Material(
@@ -186,53 +204,12 @@ def _material(
         parameters={key: value for key, value in own.parameters.items() if value or key not in _NONE_WHERE_0},
         mass=float(f"{float(mass.sum()):.14g}"),  # 8.1, not the round-off of its quadrature
         h=h,
-        viscosity_quadratic=viscosity["quadratic"] or own.viscosity_quadratic,
-        viscosity_linear=viscosity["linear"] or own.viscosity_linear,
+        viscosity_quadratic=entry.get("quadratic") or viscosity["quadratic"] or own.viscosity_quadratic,
+        viscosity_linear=entry.get("linear") or viscosity["linear"] or own.viscosity_linear,
+        rho_min=entry.get("rho_min") or own.rho_min,
+        rho_max=entry.get("rho_max") or own.rho_max,
         tables=dict(own.tables),
-        eos=own.eos,
     )
-
-
-def _control(model: Model, target: Model, settings: Settings, dimension: int, report: Report) -> ParticleControl:
-    analysis = model.analysis
-
-    def said(key: str, own: float | None) -> Any:
-        return settings[key] if settings.gives(key) or own is None else own
-
-    end = said("end_time", analysis.end_time)
-    if not settings.gives("end_time") and analysis.end_time is None:
-        report.notes.append(f"end_time is not set: {end:g}")
-    output, history = said("output_interval", analysis.output_interval), settings["history_interval"]
-    friction = settings["friction"]
-    laws = {name: (law["strength"], law["exponent"]) for name, law in settings["contact_laws"].items()}
-    gravity = settings["gravity"] if settings.gives("gravity") else held.gravity(model, end, report)
-    control = ParticleControl(
-        dimension=dimension,
-        end_time=end,
-        step_factor=said("step_factor", analysis.step_factor),
-        initial_step=said("initial_step", analysis.initial_step),
-        output_interval=end / FRAMES if output is None else output,
-        history_interval=end / ROWS if history is None else history,
-        contact=int(settings["contact"] == "potential"),
-        step_option=settings["step_option"],
-        velocity_option=int(settings["xsph"]),
-        h_option=settings["h_option"],
-        max_neighbours=400,  # the original stops where a count jumps past its table
-        friction=None if friction["static"] is None else (friction["static"], friction["kinetic"]),
-        base_acceleration=gravity if any(gravity) else None,
-    )
-    if control.friction is not None:
-        control.dialect = "2019-10"
-    if control.contact:
-        for material in target.materials.values():
-            law = laws.get(material.name) or laws.get(material.name.removeprefix("part ")) or laws.get(ANY)
-            if law is None:
-                expected = f"contact_laws: {{{material.name}: {{strength: K, exponent: n}}}}"
-                settings.fault(("contact",), "a part has no contact law", material.name, expected)
-            else:
-                control.contact_laws.append(law)
-        settings.stop()
-    return control
 
 
 def _report_lost(model: Model, chosen: list[int], filling: Filling, report: Report) -> None:

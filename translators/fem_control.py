@@ -24,7 +24,7 @@ def native_of(family: str, plastic: bool, settings: Settings) -> dict[str, Any]:
     native: dict[str, Any] = {"IATYP": _KINEMATICS.get(fem["kinematics"], int(plastic))}
     if family == "shell":
         native["NGAUSZ"] = max(fem["thickness_points"], 5 if plastic else 2)
-        native["NETIP"] = _SHELLS[fem["shells"]]
+        native["quadrilaterals"] = _SHELLS[fem["shells"]]  # of a mixed part: its triangles have a type of their own
     return native
 
 

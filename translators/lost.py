@@ -8,6 +8,8 @@ from typing import Any
 
 from zrno.translators.report import Report
 
+_SAID_AS = {"native": "numbers that the source's format alone has"}
+
 
 def report_lost(items: Iterable[Any], said: set[str], what: str, where: str, report: Report) -> None:
     """Note what dataclass items hold beyond the fields `said`: a field that the model gets later is noted of itself.
@@ -21,7 +23,8 @@ def report_lost(items: Iterable[Any], said: set[str], what: str, where: str, rep
             if f.name not in said and _is_filled(value := getattr(item, f.name), default):
                 counts[f.name] = counts.get(f.name, 0) + (len(value) if _is_list(value) else 1)
     for name, count in counts.items():
-        report.drop(f"{what} {name.replace('_', ' ')}".strip(), count, where)
+        said_as = _SAID_AS.get(name, name.replace("_", " "))
+        report.drop(f"{what} {said_as}".strip(), count, where)
 
 
 def _is_list(value: Any) -> bool:

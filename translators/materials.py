@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 
 from zrno.translators.law_maps import with_defaults
-from zrno.translators.laws import LAWS
-from zrno.translators.model import Material, Model
+from zrno.translators.laws import EQUATIONS_OF_STATE, LAWS
+from zrno.translators.model import Eos, Material, Model
 from zrno.translators.report import Report
 from zrno.translators.settings import Settings
+from zrno.translators.yaml_marks import dotted
 
+NEED_EQUATION = ("fluid", "hydro")
 ANY = "*"  # in place of a part's name: all parts that have no entry of their own
 
 
@@ -93,6 +95,37 @@ def _check(settings: Settings, name: str, material: Material, report: Report, *,
         ):
             if bad and not (key == "yield_stress" and instead_of_yield(material)):
                 settings.fault(("materials", name, key), f"materials.{name}.{key} is {message}", f"{p[key]:g}", wanted)
+
+
+def equation_of_state(settings: Settings, model: Model, part: int, material: Material) -> Eos | None:
+    """The equation of state of a part: what the settings say, over its own or its material's.
+
+    What is missing or not wanted is a fault of the settings.
+    """
+    number = model.parts[part].eos or material.eos
+    own = None if number is None else model.equations_of_state.get(number)
+    name, entry = settings_of(settings, model, part)
+    said = {} if entry is None else {key: value for key, value in entry["eos"].items() if value is not None}
+    wanted = material.law in NEED_EQUATION
+    kind = said.pop("type", "" if own is None else own.law)
+    place = ("materials", name, "eos")
+    if not kind:
+        if wanted or said:
+            expected = f"materials: {{{name}: {{eos: {{type: murnaghan, ...}}}}}}"
+            settings.fault(place, f"the law {material.law} of {name} needs an equation of state", name, expected)
+        return None
+    if not wanted and said:
+        expected = f"a law that has one: {', '.join(NEED_EQUATION)}"
+        settings.fault(place, f"the law {material.law} of {name} takes no equation of state", kind, expected)
+    known = EQUATIONS_OF_STATE[kind].parameters if kind in EQUATIONS_OF_STATE else {}
+    for key in sorted(set(said) - set(known)):
+        expected = "one of " + ", ".join(known)
+        settings.fault((*place, key), f"the equation of state {kind} has no {key}", f"{said[key]:g}", expected)
+    given = (dict(own.parameters) if own is not None and own.law == kind else {}) | said
+    for key, default in known.items():
+        if default is None and key not in given:
+            settings.fault(place, f"{dotted((*place, key))} is missing", name, f"a value of {key}")
+    return Eos(number or 0, own.name if own is not None else "", kind, given)
 
 
 def instead_of_yield(material: Material) -> bool:

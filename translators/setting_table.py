@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from zrno.translators.laws import LAWS
+from zrno.translators.laws import EQUATIONS_OF_STATE, LAWS
 from zrno.translators.setting_types import (
     BOUNDARY_CODES,
     Group,
@@ -11,8 +11,11 @@ from zrno.translators.setting_types import (
     dofs,
     law_parameters,
     number,
+    numbers,
     one_of,
     pairs,
+    plane,
+    rows,
     some_vector,
     vector,
     word,
@@ -48,6 +51,48 @@ TABLE: tuple[Setting | Group, ...] = (
     Setting("h_option", one_of(0, 1, 2), 0, "smoothing length: 0 constant, 1 by div v, 2 by density", "card 6 h_opt"),
     Setting("h_factor", number(0.0, above=True), 1.2, "smoothing length in spacings", "material card h"),
     Setting("xsph", one_of(False, True), False, "particles move with a smoothed velocity", "card 5 veloc_opt"),
+    Setting("discretisation", one_of(0, 1), 0, "0 basic SPH, 1 mixed-correction SPH", "card 1 disctype"),
+    Setting(
+        "dynamic_relaxation",
+        number(0.0),
+        0.0,
+        "factor on the velocities in each step; used between 0.1 and 1",
+        "card 2 drelax_scale",
+    ),
+    Setting("max_neighbours", count, 400, "of a particle: the original stops past it", "card 6 maxnbr"),
+    Setting("history_particles", rows(count), [], "numbers of particles", "history cards"),
+    Setting(
+        "transducers",
+        rows(numbers("x", "y", "z", "material", whole=(3,))),
+        [],
+        "of pressure: [x, y, z, number of the material], ..",
+        "transducer cards",
+    ),
+    Group(
+        "planes",
+        tuple(
+            Setting(f"{axis}{end}", plane, None, "null: none" if axis == "x" else "", f"plane cards {axis}{end}")
+            for axis in "xyz"
+            for end in ("min", "max")
+        ),
+        "[symmetry, 0.0]: a plane and its coordinate; periodic ones stand on both sides; limit: particles end there",
+    ),
+    Group(
+        "birth_death",
+        (
+            Setting("option", one_of(0, 1, 2, 3), 0, "0 none, 1 birth, 2 death, 3 both", "card 7 birth_death"),
+            Setting("particles", numbers("first", "last", whole=(0, 1)), None, "[first, last] that are born"),
+            Setting(
+                "birth_plane",
+                numbers("x", "y", "z", "orientation", whole=(3,)),
+                None,
+                "[x, y, z, orientation]",
+                "card 7 plane_particle",
+            ),
+            Setting("death_plane", numbers("x", "y", "z", "orientation", whole=(3,)), None, "[x, y, z, orientation]"),
+        ),
+        "particles that are born and die (dialect 2019-10)",
+    ),
     Setting("gravity", vector, [0.0, 0.0, 0.0], "base acceleration x, y, z", "base acceleration card"),
     Setting(
         "contact",
@@ -80,6 +125,7 @@ TABLE: tuple[Setting | Group, ...] = (
         (
             Setting("static", number(0.0, optional=True), None, "null: no friction", "friction card"),
             Setting("kinetic", number(0.0, optional=True), None, "at most static", "friction card"),
+            Setting("fluid", number(0.0, optional=True), None, "of a fluid, in place of the two", "friction card"),
         ),
         "between bodies",
     ),
@@ -90,7 +136,29 @@ TABLE: tuple[Setting | Group, ...] = (
             Setting("density", number(0.0, above=True, optional=True), None, "", "material card density"),
             *(Setting(name, parse, None, ", ".join(laws)) for name, (parse, laws) in law_parameters().items()),
             Setting("hardening", pairs, None, "von_mises: [[plastic strain, yield stress], ..]"),
+            Group(
+                "eos",
+                (
+                    Setting(
+                        "type",
+                        one_of(None, *EQUATIONS_OF_STATE),
+                        None,
+                        "null: the mesh's own. 1 4 13 28 41: " + " ".join(EQUATIONS_OF_STATE),
+                        "material card eos",
+                    ),
+                    *(
+                        Setting(name, parse, None, ", ".join(laws))
+                        for name, (parse, laws) in law_parameters(EQUATIONS_OF_STATE).items()
+                    ),
+                ),
+                "equation of state, which the laws fluid and hydro need",
+            ),
             Setting("velocity", vector, [0.0, 0.0, 0.0], "initial velocity", "velocity cards"),
+            Setting("h_factor", number(0.0, above=True, optional=True), None, "null: the h_factor of all"),
+            Setting("quadratic", number(0.0, optional=True), None, "viscosity Q; null: that of all", "av_q"),
+            Setting("linear", number(0.0, optional=True), None, "viscosity L; null: that of all", "av_l"),
+            Setting("rho_min", number(0.0, optional=True), None, "null: the deck's 1e-10", "material card rho_min"),
+            Setting("rho_max", number(0.0, optional=True), None, "null: the deck's 1e10", "material card rho_max"),
             Setting(
                 "bc",
                 one_of(*BOUNDARY_CODES),

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from zrno.translators.laws import LAWS
+from zrno.translators.laws import LAWS, Law
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +27,7 @@ class Group:
     """A key with keys below it. named: the keys right below are names of the user's (parts), each with these keys."""
 
     key: str
-    items: tuple[Setting, ...]
+    items: tuple[Setting | Group, ...]
     comment: str
     named: bool = False
 
@@ -87,6 +87,48 @@ def some_vector(value: Any) -> tuple[float | None, ...] | None:
         raise ValueError("a list of three numbers, null where free") from None
 
 
+def plane(value: Any) -> tuple[int, float] | None:
+    """A boundary plane: its code in the deck and its place."""
+    if value is None:
+        return None
+    try:
+        kind, at = value
+        return PLANES[kind], number()(at)
+    except (ValueError, TypeError, KeyError):
+        raise ValueError("[symmetry, periodic or limit, the coordinate], or null") from None
+
+
+def numbers(*what: str, whole: tuple[int, ...] = ()) -> Callable[[Any], Any]:
+    """A list of numbers by their names; whole: places of those that are whole numbers."""
+    expected = f"[{', '.join(what)}]"
+
+    def parse(value: Any) -> tuple[float, ...] | None:
+        if value is None:
+            return None
+        if not isinstance(value, list) or len(value) != len(what):
+            raise ValueError(expected)
+        try:
+            found = [number()(item) for item in value]
+        except ValueError:
+            raise ValueError(expected) from None
+        if any(not found[k].is_integer() for k in whole):
+            raise ValueError(f"{expected}, whole: {', '.join(what[k] for k in whole)}")
+        return tuple(int(x) if k in whole else x for k, x in enumerate(found))
+
+    return parse
+
+
+def rows(parse: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """A list of values, each as `parse` wants it."""
+
+    def parse_rows(value: Any) -> list[Any]:
+        if not isinstance(value, list):
+            raise ValueError("a list")
+        return [parse(item) for item in value]
+
+    return parse_rows
+
+
 def pairs(value: Any) -> list[tuple[float, float]] | None:
     if value is None:
         return None
@@ -119,10 +161,10 @@ def count(value: Any) -> int:
     return value
 
 
-def law_parameters() -> dict[str, tuple[Callable[[Any], Any], list[str]]]:
-    """Parameters of all laws: how each is parsed, and the laws that have it."""
+def law_parameters(table: Mapping[str, Law] = LAWS) -> dict[str, tuple[Callable[[Any], Any], list[str]]]:
+    """Parameters of all laws, or equations of state: how each is parsed, and the laws that have it."""
     laws: dict[str, list[str]] = {}
-    for law, row in LAWS.items():
+    for law, row in table.items():
         for name in row.parameters:
             laws.setdefault(name, []).append(law)
     return {name: (number(**_BOUNDS.get(name, {}), optional=True), users) for name, users in laws.items()}
@@ -133,5 +175,6 @@ _BOUNDS: dict[str, dict[str, Any]] = {
     **{key: {"least": 0.0, "above": True} for key in ("E", "K", "G")},
     **{key: {"least": 0.0} for key in ("yield_stress", "tangent_modulus", "beta", "failure_strain")},
 }
+PLANES = {"symmetry": 1, "periodic": 2, "limit": 3}
 DOFS = {"x": 1, "y": 2, "z": 3, "rx": 4, "ry": 5, "rz": 6}
 BOUNDARY_CODES = {"": 0, "x": 1, "y": 2, "z": 3, "xy": 4, "yz": 5, "xz": 6, "xyz": 7}

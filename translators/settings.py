@@ -68,7 +68,7 @@ def load(
     if isinstance(document.data, dict):
         for name, value in (overrides or {}).items():
             key, place = where.get(name, (Place(said, 1, 1, name), Place(said, 1, 1, str(value))))
-            document.override(tuple(name.split(".")), value, place, key)
+            document.override(tuple(name.split(".")), copy.deepcopy(value), place, key)
     _take(TABLE, document.data, (), settings.values, document)
     _check(settings)
     settings.stop()
@@ -77,16 +77,16 @@ def load(
 
 def defaults() -> dict[str, Any]:
     """Every key's default; groups by name are empty."""
+    return _defaults_of(TABLE)
+
+
+def _defaults_of(items: tuple[Setting | Group, ...]) -> dict[str, Any]:
     return {
         item.key: item.parse(copy.copy(item.default))
         if isinstance(item, Setting)
-        else ({} if item.named else _defaults_of(item))
-        for item in TABLE
+        else ({} if item.named else _defaults_of(item.items))
+        for item in items
     }
-
-
-def _defaults_of(group: Group) -> dict[str, Any]:
-    return {item.key: item.parse(copy.copy(item.default)) for item in group.items}
 
 
 def help_settings() -> str:
@@ -97,15 +97,17 @@ def help_settings() -> str:
         comment = ", ".join(filter(None, [item.comment, f"[{item.deck}]" if item.deck else ""]))
         return f"{indent + item.key + ': ' + _yaml(item.default):<44}# {comment}"
 
-    for item in TABLE:
-        if isinstance(item, Setting):
-            lines.append(line(item, ""))
-            continue
-        lines.append(f"{item.key + ':':<44}# {item.comment}")
-        indent = "    " if item.named else "  "
-        if item.named:
-            lines.append("  NAME:")
-        lines += [line(below, indent) for below in item.items]
+    def walk(items: tuple[Setting | Group, ...], indent: str) -> None:
+        for item in items:
+            if isinstance(item, Setting):
+                lines.append(line(item, indent))
+                continue
+            lines.append(f"{indent + item.key + ':':<44}# {item.comment}")
+            if item.named:
+                lines.append(f"{indent}  NAME:")
+            walk(item.items, indent + ("    " if item.named else "  "))
+
+    walk(TABLE, "")
     return "\n".join(lines) + "\n"
 
 
@@ -143,7 +145,7 @@ def _take(
             document.fault(location, f"{key} is not a mapping", expected, text=said)
         else:
             for name, entry in value.items():
-                own = values[key].setdefault(name, _defaults_of(item))
+                own = values[key].setdefault(name, _defaults_of(item.items))
                 _take(item.items, entry, (*location, name), own, document)
 
 
@@ -163,6 +165,15 @@ def _check(settings: Settings) -> None:
         settings.fault(
             ("friction", "kinetic"), "friction.kinetic is above friction.static", kinetic, f"at most {static:g}"
         )
+    if friction["fluid"] is not None and static is not None:
+        settings.fault(
+            ("friction", "fluid"), "friction of a fluid and of solids", friction["fluid"], "one or the other"
+        )
+    birth = settings["birth_death"]
+    for field, needed in (("death_plane", birth["option"] >= 2), ("particles", birth["option"] in (1, 3))):
+        if needed and birth[field] is None:
+            message = f"birth_death.{field} is missing for option {birth['option']}"
+            settings.fault(("birth_death",), message, "null", f"a value of {field}")
     for name, material in settings["materials"].items():
         if material["nu"] is not None and material["nu"] >= 0.5:
             key = ("materials", name, "nu")

@@ -26,6 +26,7 @@ Ints = NDArray[np.int64]
 _CHUNK = 20_000  # cards looked at together: the cut-out columns stay in the cache
 _FEW = 100_000  # numbers: below this Python parses them before the jitted kernels are loaded
 _LINES_AT_A_TIME = 1 << 23  # bytes searched for line ends
+_MANY_LINES, _SHORTEST_MEAN = 400_000, 8  # lines, and bytes of them with their ends: see refuse_short_lines
 _REAL = re.compile(r"([+-]?)(\d+\.?\d*|\.\d+)(?:[EeDdQq]([+-]?\d+)|([+-]\d+))?$")
 _INTEGER = re.compile(r"[+-]?\d+$")
 _LONGEST_REAL = 1000  # characters: what is longer is no number of a person or a program
@@ -55,6 +56,18 @@ def read_bytes(path: Path | str) -> bytes:
     if not data[:4096].strip() and not data.strip():
         raise InputError([Fault(str(path), 1, 1, "the file is empty", expected="a mesh or a deck")])
     return data
+
+
+def refuse_short_lines(path: Path | str, size: int, lines: int) -> None:
+    """Raise InputError for a file of `size` bytes that is nothing but short lines: no mesh, and a page of memory each.
+
+    Every line costs its indices; what a real deck says takes tens of bytes a line, so that this is little beside it.
+    """
+    if lines > _MANY_LINES and lines * _SHORTEST_MEAN > size:
+        mean = size / lines
+        said = f"{lines} lines of {mean:.1f} characters on average: nothing that a mesh or a deck would say"
+        expected = f"at least {_SHORTEST_MEAN} characters on average"
+        raise InputError([Fault(str(path), 1, 1, said, expected=expected)])
 
 
 def line_spans(data: bytes) -> tuple[Ints, Ints]:
@@ -290,6 +303,7 @@ class Cards:
         self.faults = Faults(str(path))
         self._data = data
         self._bytes = np.frombuffer(data, np.uint8)
+        refuse_short_lines(path, len(data), data.count(b"\n"))
         starts, ends = line_spans(data)
         self._lines = len(starts)
         first = self._bytes[np.minimum(starts, len(data) - 1)]

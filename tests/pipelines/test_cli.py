@@ -15,6 +15,7 @@ import pytest
 from zrno.pipelines import cli, console
 from zrno.pipelines.errors import Missing, RunFailed
 from zrno.solvers.errors import Diverged
+from zrno.translators import read
 
 ZRNO = [sys.executable, "-c", "from zrno.pipelines.cli import main; main()"]
 
@@ -241,6 +242,60 @@ def test_help_settings_is_yaml(capsys: pytest.CaptureFixture[str]) -> None:
     code, out, _ = _call(capsys, "convert", "--help-settings")
     assert code == 0
     assert "end_time" in yaml.safe_load(out)
+
+
+@pytest.mark.parametrize(
+    ("words", "head"),
+    [
+        ([], b"4.1 0 8\n"),
+        (["--msh", "2.2"], b"2.2 0 8\n"),
+        (["--binary"], b"4.1 1 8\n\x01\0\0\0"),
+        (["--binary", "--msh", "2.2"], b"2.2 1 8\n\x01\0\0\0"),
+    ],
+)
+def test_convert_writes_the_mesh_asked_for(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, words: list[str], head: bytes
+) -> None:
+    source, target = tmp_path / "a.k", tmp_path / "b.msh"
+    source.write_text("*KEYWORD\n*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n*ELEMENT_SHELL\n1,1,1,2,3,3\n*END\n")
+    assert _call(capsys, "convert", str(source), str(target), *words)[0] == 0
+    assert target.read_bytes().startswith(b"$MeshFormat\n" + head)
+    code, out, _ = _call(capsys, "info", str(target), "--json")
+    assert (code, json.loads(out)["elements"]) == (0, {"tri3": 1})
+    if words:
+        code, _, err = _call(capsys, "convert", str(source), str(tmp_path / "b.vtu"), *words)
+        assert code == 2
+        assert "are for .msh meshes" in err
+
+
+def test_water_in_a_box_of_a_script_and_settings_alone(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """The settings that the page on .mcm decks shows."""
+    page = (Path(__file__).parents[2] / "translators" / "pages" / "mcm.md").read_text()
+    (tmp_path / "tank.yaml").write_text(page.split("```yaml\n")[1].split("```")[0])
+    (tmp_path / "tank.geo").write_text(
+        'SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 1, 0.5, 0.6}; Physical Volume("water", 1) = {1};\n'
+    )
+    deck = tmp_path / "tank.mcm"
+    words = [str(tmp_path / "tank.geo"), str(deck), "--settings", str(tmp_path / "tank.yaml"), "--spacing", "0.1"]
+    code, _, err = _call(capsys, "convert", *words)
+    assert code == 0, err
+    model = read(deck)
+    assert (model.materials[1].law, len(model.particles)) == ("fluid", 300)
+    assert model.equations_of_state[model.materials[1].eos].parameters["B"] == 5e4
+    assert model.particle_control.planes == [(1, 0.0), (1, 1.0), (0, 0.0), (0, 0.0), (1, 0.0), (0, 0.0)]
+
+
+def test_a_reader_that_has_enough(tmp_path: Path) -> None:
+    (tmp_path / "a.k").write_text("*KEYWORD\n*NODE\n1,0,0,0\n*END\n")
+    code = "import sys; sys.argv = ['zrno', 'info', 'a.k']\nfrom zrno.pipelines.cli import main\nmain()"
+    with subprocess.Popen(
+        [sys.executable, "-c", code], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as run:
+        assert run.stdout is not None
+        assert run.stderr is not None
+        run.stdout.close()
+        said = run.stderr.read().decode()
+    assert (run.returncode, said) == (1, "")
 
 
 def test_convert_says_what_only_particle_decks_take(capsys: pytest.CaptureFixture[str], sample: Path) -> None:

@@ -14,6 +14,7 @@ from zrno.translators.model import Ints, Source
 _NULL = "<NULL>"
 _FIRST_CHUNK, _LARGEST_CHUNK = 64, 1 << 18
 _MOST_IN_A_LINE = 2048  # numbers
+_SHORT = 16  # lines of a list that is read in Python
 
 
 class Cursor:
@@ -100,6 +101,9 @@ class Cursor:
 
     def skip(self, count: int, what: str) -> None:
         """Pass by lines that are not needed."""
+        if self.at + count <= self.block.last and not self.lines.blank[self.at : self.at + count].any():
+            self.at += count
+            return
         for _ in range(count):
             if self.done:
                 self.fail(f"block {self.block.number} ends here", what)
@@ -130,6 +134,23 @@ class Cursor:
             found.append(heads)
             self.at = int(rows[-1]) + 1
             size = min(2 * size, _LARGEST_CHUNK)
+
+    def short_list(self, width: int) -> list[list[int]] | None:
+        """The rows of a list that ends after a few lines of plain whole numbers; None, and nothing passed, of others.
+
+        Files have lists of one member by the ten thousand, for which arrays are slow.
+        """
+        found: list[list[int]] = []
+        for row in range(self.at, min(self.at + _SHORT, self.block.last)):
+            words = self.lines.words(row)
+            if words and words[0] == b"-1":
+                self.at = row + 1
+                return found
+            plain = self.lines.plain(words)
+            if plain is None or len(plain) < width:
+                return None
+            found.append(plain[:width])
+        return None
 
     def peek(self, count: int) -> Ints:
         """The next lines that are not blank, at most `count`, without passing them."""

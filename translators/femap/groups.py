@@ -71,19 +71,22 @@ class Groups:
         known = Places(np.concatenate([np.zeros(0, np.int64), *(block.ids for block in blocks)]))
         owner = np.repeat(np.arange(len(blocks)), [len(block.ids) for block in blocks])
         for group in self.found:
-            at, there = nodes.of(group.members(NODE_LIST, NODE_RULE, nodes.ids))
-            missing += int((~there).sum())
-            if len(at[there]):
-                model.node_sets.append(NodeSet(group.number, group.title, at[there], group.source))
+            members = group.members(NODE_LIST, NODE_RULE, nodes.ids)
+            if len(members):
+                at, there = nodes.of(members)
+                missing += int((~there).sum())
+                if there.any():
+                    model.node_sets.append(NodeSet(group.number, group.title, at[there], group.source))
             ids = group.members(ELEMENT_LIST, ELEMENT_RULE, elements.ids)
-            at, there = known.of(ids)
-            missing += int((~there).sum())
-            families: dict[str, list[Ints]] = {}
-            for block, some in by_value(owner[at[there]]):
-                families.setdefault(blocks[block].family, []).append(some)
-            for family, places in families.items():
-                mine = ids[there][np.sort(np.concatenate(places))]
-                model.element_sets.append(ElementSet(group.number, group.title, family, mine, group.source))
+            if len(ids):
+                at, there = known.of(ids)
+                missing += int((~there).sum())
+                families: dict[str, list[Ints]] = {}
+                for block, some in by_value(owner[at[there]]):
+                    families.setdefault(blocks[block].family, []).append(some)
+                for family, places in families.items():
+                    mine = ids[there][np.sort(np.concatenate(places))]
+                    model.element_sets.append(ElementSet(group.number, group.title, family, mine, group.source))
             for kind in group.lists.keys() - {NODE_LIST, ELEMENT_LIST}:
                 other[f"lists of kind {kind}"] += 1
             for kind in group.rules.keys() - {NODE_RULE, ELEMENT_RULE}:
@@ -104,9 +107,13 @@ def _read(cursor: Cursor) -> _Group:
         cursor.integers(1, f"the number of {what}", 0)
         while not cursor.at_end():
             kind = cursor.integers(1, f"the kind of {what}", 0)[0]
-            rows = cursor.records(1, what)
-            values = cursor.lines.whole(cursor.lines.table(rows, width, what), rows)
-            if len(rows):
+            short = cursor.short_list(width)
+            if short is not None:
+                values = np.array(short, np.int64).reshape(-1, width)
+            else:
+                rows = cursor.records(1, what)
+                values = cursor.lines.whole(cursor.lines.table(rows, width, what), rows)
+            if len(values):
                 lists[kind] = values if width > 1 else values[:, 0]
         cursor.skip(1, what)
     return group

@@ -16,11 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from zrno.translators.model import Floats, Ints
-from zrno.translators.text import MAX_FAULTS, Faults, line_spans, parse_real
+from zrno.translators.text import MAX_FAULTS, Faults, line_spans, parse_real, refuse_short_lines
 
 _LONGEST_LINE = 4096  # bytes; the format's own limit is 255
 _FEW, _VERY_FEW = 50_000, 100  # numbers: fewer are parsed in Python before the jitted kernels are loaded, and after
 _LARGE = 4 << 20  # bytes of a file for which they are loaded at once
+_PLAIN_DIGITS = 15  # of a whole number that is sure to be below the next
 _EXACT = 2.0**53  # doubles hold every whole number up to here
 _EMPTY = re.compile(rb"^,|,[ \t\r\f\v]*,")
 _FIELD = re.compile(rb"[ \t\r\f\v]*([^ \t\r\f\v,]*)[ \t\r\f\v]*(,?)")
@@ -42,6 +43,7 @@ class Lines:
         data = data.removeprefix(_BOM)
         self._data = data
         self._bytes = np.frombuffer(data, np.uint8)
+        refuse_short_lines(path, len(data), data.count(b"\n"))
         self._begins, self._ends = line_spans(data)
         longest = int((self._ends - self._begins).max(initial=0))
         if longest > _LONGEST_LINE:
@@ -100,6 +102,13 @@ class Lines:
             return [word for _, word in self.fields(row)]
         return line.replace(b",", b" ").split()
 
+    @staticmethod
+    def plain(words: list[bytes]) -> list[int] | None:
+        """The fields as whole numbers, where they are digits alone and a double holds them; else None."""
+        if all(word.isdigit() and len(word) <= _PLAIN_DIGITS for word in words):
+            return [int(word) for word in words]
+        return None
+
     def numbers(self, row: int, least: int, what: str) -> list[float]:
         """The numbers of one line, at least `least`. Leaves the block after noting what is no number."""
         found: list[float] = []
@@ -114,6 +123,9 @@ class Lines:
 
     def integers(self, row: int, least: int, most: int, smallest: float, what: str) -> list[int]:
         """The first whole numbers of one line, filled up with 0 to `most`; smallest: what the first may be."""
+        plain = self.plain(self.words(row))
+        if plain is not None and len(plain) >= max(least, 1) and plain[0] >= smallest:
+            return (plain + [0] * most)[:most]
         found = (self.numbers(row, least, what.removesuffix("'s number")) + [0.0] * most)[:most]
         for place, value in enumerate(found):
             if not value.is_integer() or abs(value) >= _EXACT or (place == 0 and value < smallest):

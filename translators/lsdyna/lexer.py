@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from zrno.translators.lsdyna.bulk import load
-from zrno.translators.text import Ints
+from zrno.translators.text import Ints, refuse_short_lines
 
 _STAR, _DOLLAR, _BLANK, _NEWLINE, _RETURN = b"*$ \n\r"
 _TAIL = 1000  # rows looked at together for blank ones at the end
@@ -47,6 +47,7 @@ class File:
 
     def __init__(self, shown: str, path: Path) -> None:
         data, ends, self.binary = load(path, shown)
+        refuse_short_lines(shown, len(data), len(ends))
         if data[:3].tobytes() == b"\xef\xbb\xbf":  # a mark that some editors put before UTF-8
             data, ends = data[3:], ends - 3
         self.shown = shown

@@ -148,7 +148,8 @@ def _key(
         collapsed = netip == 3 and kind in COLLAPSED and asked != 3
     elif family in ("plane", "shell"):
         triangle = TABLE[kind].shape.corners == 3
-        own = (2, 21) if family == "plane" else (84 if kind == "quad4" else 8, 81)
+        quadrilaterals = 84 if section is None else section.native.get("quadrilaterals", 84)
+        own = (2, 21) if family == "plane" else (quadrilaterals if kind == "quad4" else 8, 81)
         netip = own[triangle]
         if asked is not None and asked in TYPES and TYPES[asked].family == family:
             first_order = kind in ("quad4", "tri3") or asked not in (84, 85)

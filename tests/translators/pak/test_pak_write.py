@@ -8,8 +8,10 @@ from types import ModuleType
 import numpy as np
 import pytest
 
+from zrno.translators import load_settings
 from zrno.translators import read as read_any
 from zrno.translators.elements import TABLE
+from zrno.translators.fem import to_fem
 from zrno.translators.geometry import measures
 from zrno.translators.model import (
     BodyLoad,
@@ -126,6 +128,18 @@ def test_a_section_may_ask_for_a_type_of_shell(
         again, _ = there_and_back(model, tmp_path)
         assert strict.read(tmp_path / "a.dat").groups[0][0] == netip
         assert again.element_counts() == {kind: 1}
+
+
+@pytest.mark.parametrize(("shells", "quadrilateral"), [("bathe_dvorkin", 84), ("isoparametric", 8)])
+def test_triangles_of_a_shell_part_are_of_the_triangular_type(
+    tmp_path: Path, mesh: Mesh, strict: ModuleType, shells: str, quadrilateral: int
+) -> None:
+    model, _ = to_fem(mesh("quad4", "tri3"), load_settings(overrides={"fem.shells": shells}))
+    again, _ = there_and_back(model, tmp_path)
+    deck = strict.read(tmp_path / "a.dat")
+    corners = {group[0]: len(set(e[n]) - {0}) for group, e in zip(deck.groups, deck.elements, strict=True) for n in e}
+    assert corners == {quadrilateral: 4, 81: 3}
+    assert again.element_counts() == {"quad4": 1, "tri3": 1}
 
 
 def test_trusses_and_beams(tmp_path: Path, mesh: Mesh, strict: ModuleType) -> None:
