@@ -142,9 +142,9 @@ class Scene(Section):
         """The labels of the scene's units; None where it names none."""
         return None if self.units is None else SYSTEMS[self.units]
 
-    def fault(self, location: Location, message: str, expected: str = "") -> Fault:
-        """A fault at a place of the scene's file."""
-        place = self._document.place(location)
+    def fault(self, location: Location, message: str, expected: str = "", *, key: bool = False) -> Fault:
+        """A fault at a place of the scene's file: at a value, or at its key."""
+        place = self._document.place(location, key=key)
         return Fault(place.path, place.line, place.column, message, place.text, expected)
 
     def places(self, mesh: int) -> dict[str, tuple[Place, Place]]:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from zrno.pipelines import ranking
+from zrno.pipelines.balance import LIMIT
 from zrno.pipelines.load import load
 from zrno.pipelines.manifest import plain
 from zrno.pipelines.reference import error, measure
@@ -100,6 +101,8 @@ def _row(plan: Plan, name: str, chosen: Mapping[str, Any], where: Path, stamp: M
         "message": stamp.get("message", ""),
         "output": str(where),
     }
+    if (stamp["balance_error"] or 0.0) > LIMIT and not row["message"]:
+        row["message"] = f"the energy balance is out by {stamp['balance_error']:.0%}"
     if done:
         try:
             value = measure(load(where), plan.study.quantity)

@@ -42,7 +42,9 @@ def prepare(path: Path, options: Mapping[str, Any]) -> Plan:
     for key, values in scene.study.vary.items():
         for i, value in enumerate(values):
             if key in options:
-                faults.append(scene.fault(("study", "vary", key), f"{key} is set by --set, too", "one of the two"))
+                faults.append(
+                    scene.fault(("study", "vary", key), f"{key} is set by --set, too", "one of the two", key=True)
+                )
                 break
             faults += _refused(path, scene, options, key, i, value)
     if faults:
@@ -61,8 +63,9 @@ def _refused(path: Path, scene: Scene, options: Mapping[str, Any], key: str, i: 
             if fault.path != "--set":
                 yield fault
                 continue
-            at = ("study", "vary", key) if "unknown key" in fault.message else ("study", "vary", key, i)
-            yield scene.fault(at, fault.message, fault.expected)
+            of_key = fault.column == 1  # the value of a --set stands behind its key
+            at = ("study", "vary", key) if of_key else ("study", "vary", key, i)
+            yield scene.fault(at, fault.message, fault.expected, key=of_key)
 
 
 def run_name(chosen: Mapping[str, Any]) -> str:
