@@ -35,7 +35,7 @@ class Reference:
 
 
 def reference(study: Study, folder: Path) -> Reference:
-    """The reference of a study. folder: of the scene. Raises InputError for its file.
+    """The reference of a study. folder: of the scene. Raises InputError for its file, ValueError for its solution.
 
     A file has names of columns in its first row, units in a second one that is no numbers, if it likes, and `#` before
     comments. A curve needs the columns `time` (of a profile: its axis) and the quantity's name; a number that name
@@ -43,7 +43,7 @@ def reference(study: Study, folder: Path) -> Reference:
     """
     if study.analytic is not None:
         asked = getattr(study.analytic.solution(), study.analytic.result)
-        return Reference(function=asked) if study.quantity.abscissa else Reference(number=asked())
+        return Reference(function=asked) if study.quantity.abscissa else Reference(number=_finite(asked))
     if isinstance(study.reference, float):
         return Reference(number=study.reference)
     assert study.reference is not None
@@ -94,6 +94,17 @@ def read_columns(path: Path, wanted: list[str]) -> list[list[float]]:
     if faults:
         raise InputError(faults[:20])
     return found
+
+
+def _finite(asked: Callable[[], float]) -> float:
+    """A result of a closed-form solution. Raises ValueError where floating point cannot hold it."""
+    try:
+        number = asked()
+    except ArithmeticError as error:
+        raise ValueError(f"the solution is no finite number: {error}") from error
+    if not math.isfinite(number):
+        raise ValueError("the solution is no finite number")
+    return number
 
 
 def _number(text: str) -> float:

@@ -50,7 +50,18 @@ def prepare(path: Path, options: Mapping[str, Any]) -> Plan:
     if faults:
         raise InputError(sorted(set(faults))[:MAX_FAULTS])
     runs = {run_name(chosen): chosen for chosen in scene.study.combinations()}
-    return Plan(path, scene, scene.study, reference(scene.study, path.parent), dict(options), runs)
+    return Plan(path, scene, scene.study, reference_of(scene, path.parent), dict(options), runs)
+
+
+def reference_of(scene: Scene, folder: Path) -> Reference:
+    """What the study of a scene is measured against. Raises InputError."""
+    assert scene.study is not None
+    try:
+        return reference(scene.study, folder)
+    except InputError:
+        raise
+    except ValueError as error:
+        raise InputError([scene.fault(("study", "analytic"), str(error), "other parameters")]) from error
 
 
 def _refused(path: Path, scene: Scene, options: Mapping[str, Any], key: str, i: int, value: Any) -> Iterator[Fault]:

@@ -123,7 +123,11 @@ class Analytic(Section):
 
     def solution(self) -> Any:
         """The solution. Raises ValueError for its parameters."""
-        return SOLUTIONS[self.name](**(self.model_extra or {}))
+        given = (self.model_extra or {}).items()
+        try:
+            return SOLUTIONS[self.name](**{k: v if isinstance(v, str) else float(v) for k, v in given})
+        except OverflowError as error:
+            raise ValueError(str(error)) from error
 
     def faults(self) -> Iterator[tuple[Location, str, str]]:
         """As `Quantity.faults`."""
@@ -218,7 +222,8 @@ class Study(Section):
             for i, value in enumerate(values):
                 if value in values[:i]:
                     yield ("vary", key, i), "the value stands twice", "each value once"
-            if key.partition(".")[0] in ("study", "render", "decks"):
+            steps = key.split(".")
+            if steps[0] in ("study", "render", "decks") or (steps[0] == "meshes" and len(steps) < 3):
                 yield ("vary", key), f"{key} cannot vary", "a key that changes the run"
 
     def combinations(self) -> list[dict[str, Any]]:

@@ -93,6 +93,12 @@ def faults(path: Path, **options: Any) -> list[str]:
             "analytic: {name: taylor_bar, of: mass, start: 1, density: 1, yield_stress: 1, speed: 1}",
             "2:36: error: taylor_bar has no result mass (mass); expected one of length, ratio",
         ),
+        (
+            "reference: 5.9e-6",
+            "analytic: {name: taylor_bar, start: 1e300, density: 1e300, yield_stress: 1, speed: 1e300}",
+            "2:13: error: the solution is no finite number",
+        ),
+        ("spacing:", "meshes.0:", "3:20: error: meshes.0 cannot vary; expected a key that changes the run"),
         ("spacing:", "spacng:", "3:10: error: unknown key spacng (spacng); expected spacing (did you mean that?)"),
         ("0.125]", "-1]", "3:26: error: meshes.0.spacing has a wrong value (-1); expected a value greater than 0"),
         ("0.125]", "0.25]", "3:26: error: the value stands twice (0.25); expected each value once"),
@@ -110,6 +116,15 @@ def test_a_fault_has_its_place(folder: Path, old: str, new: str, fault: str) -> 
         fault = "5:11" + fault[3:]
     said = faults(put(folder, text))
     assert any(line.startswith(fault) for line in said), said
+
+
+def test_check_reads_the_reference(folder: Path) -> None:
+    from zrno.pipelines.check import check
+
+    (folder / "r.csv").write_text("time,kinetik\n0,1\n")
+    text = STUDY.replace("kinetic.last", "kinetic").replace("5.9e-6", "r.csv")
+    fault = check([put(folder, text)])[0]["faults"][0]
+    assert (fault["path"], fault["line"], fault["message"]) == (str(folder / "r.csv"), 1, "no column kinetic")
 
 
 def test_what_is_varied_is_not_set_too(folder: Path) -> None:
