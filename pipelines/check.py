@@ -11,6 +11,7 @@ from zrno.pipelines.drafts import drafts
 from zrno.pipelines.prepare import refuse_what_is_not_run
 from zrno.pipelines.scene import SUFFIXES
 from zrno.pipelines.scene import load as load_scene
+from zrno.pipelines.study_plan import reference_of
 from zrno.translators import InputError, Model, read
 from zrno.translators.text import Fault
 from zrno.translators.yaml_marks import Place
@@ -64,6 +65,11 @@ def _scene(path: Path, allow_outside: bool) -> list[dict[str, Any]]:
         return [_row(path, "scene", error.faults)]
     decks = [path.parent / deck for deck in scene.decks]
     row = _row(path, "scene")
+    if scene.study is not None:
+        try:
+            reference_of(scene, path.parent)
+        except InputError as error:
+            row["faults"] += map(asdict, error.faults)
     try:
         refuse_what_is_not_run(decks)
     except InputError as error:

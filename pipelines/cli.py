@@ -267,6 +267,44 @@ def plot(
         out.answer({"file": str(file)}, str(file))
 
 
+@app.command()
+def study(
+    scene: Annotated[Path, typer.Argument(metavar="SCENE", help="A scene with a section `study`.")],
+    output: Annotated[Path | None, typer.Option("-o", "--output", metavar="DIR", help="The study's folder.")] = None,
+    repeat: Annotated[int, typer.Option(metavar="N", min=1, help="Time each run N times; the median counts.")] = 1,
+    threads: Annotated[int | None, typer.Option(metavar="N", min=1, help="Default: all; few for small runs.")] = None,
+    options: Annotated[
+        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="For every run, as `run` takes it.")
+    ] = None,
+    allow_outside: AllowOutside = False,
+    json: Json = False,
+    verbose: Verbose = False,
+    quiet: Quiet = False,
+) -> None:
+    """Run a scene over resolutions and options: error against wall time, and the cheapest setting that will do.
+
+    Writes study.csv, study.json and study.png, and a result folder a run in DIR/runs; called again, it runs only what
+    is missing or was made of other inputs.
+    """
+    with console.command(typer.Exit, json=json, verbose=verbose, quiet=quiet) as out:
+        from zrno.pipelines.options import parse
+        from zrno.pipelines.study import study as run_study
+        from zrno.pipelines.study_table import study_text
+
+        result = run_study(
+            scene,
+            output=output,
+            repeat=repeat,
+            threads=threads,
+            options=parse(options or ()),
+            allow_outside=allow_outside,
+            progress=out.progress,
+            known=out.known,
+        )
+        out.code = 0 if any(row["error"] is not None for row in result["rows"]) else console.FAILED
+        out.answer(result, study_text(result))
+
+
 @samples_app.command("list")
 def samples_list(json: Json = False, verbose: Verbose = False, quiet: Quiet = False) -> None:
     """List the shipped samples."""

@@ -73,7 +73,7 @@ class Manifest:
         if self.data["status"] != "running":
             self.data["finished"] = _now()
         self._path.parent.mkdir(parents=True, exist_ok=True)
-        text = json.dumps(_plain(self.data), indent=2, ensure_ascii=False, allow_nan=False)
+        text = json.dumps(plain(self.data), indent=2, ensure_ascii=False, allow_nan=False)
         write_atomically(self._path, [text.encode(), b"\n"])
 
 
@@ -89,14 +89,14 @@ def _now() -> str:
     return datetime.now(UTC).isoformat(timespec="seconds")
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """A value as JSON has it: numbers of numpy as numbers, nan and infinities as null, all else as its text."""
     if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
+        return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, (list, tuple, set)):
-        return [_plain(item) for item in value]
+        return [plain(item) for item in value]
     if hasattr(value, "tolist"):
-        return _plain(value.tolist())
+        return plain(value.tolist())
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     return value if isinstance(value, (str, int, bool, type(None))) else str(value)

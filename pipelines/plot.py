@@ -19,7 +19,7 @@ _PANELS = {  # a quantity that stands for several columns: heading, columns
     "momentum": ("momentum", ("momentum_x", "momentum_y", "momentum_z")),
     "contact_force": ("contact force", ("contact_force_x", "contact_force_y", "contact_force_z")),
 }
-_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")  # Okabe and Ito: told apart by colour-blind eyes, too
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")  # Okabe and Ito: told apart by colour-blind eyes, too
 _FORMATS = (".png", ".pdf", ".svg")
 
 
@@ -69,7 +69,7 @@ def _draw(
     axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]
     for axis, (heading, columns) in zip(axes, panels, strict=True):
         for i, column in enumerate(columns):  # the first on top: of momenta and forces the others are often zero
-            style = {"color": _COLOURS[i], "linewidth": 1.4, "zorder": 3 - 0.1 * i}
+            style = {"color": COLOURS[i], "linewidth": 1.4, "zorder": 3 - 0.1 * i}
             axis.plot(history["time"], history[column], label=quantity(column).label, **style)
         axis.set_ylabel(_labelled(heading, columns[0], result))
         axis.grid(color="#dddddd", linewidth=0.6)

@@ -8,18 +8,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import (
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Field,
-    PrivateAttr,
-    ValidationError,
-    ValidationInfo,
-    field_validator,
-)  # fmt: skip
-from pydantic_core import ErrorDetails, PydanticCustomError
+from pydantic import BeforeValidator, Field, PrivateAttr, ValidationError, ValidationInfo, field_validator
+from pydantic_core import ErrorDetails
 
+from zrno.pipelines.sections import NotNegative, Positive, Section, wrong
+from zrno.pipelines.study_scene import Study
 from zrno.pipelines.units import SYSTEMS, Units
 from zrno.pipelines.view import LEAST_PIXELS, MOST_PIXELS, VIEWS
 from zrno.translators import settings as analysis
@@ -28,8 +21,6 @@ from zrno.translators.text import Fault, Faults, InputError
 from zrno.translators.yaml_marks import Location, Marked, Place, did_you_mean, dotted
 
 SUFFIXES = (".yaml", ".yml")
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 Pixels = Annotated[int, Field(ge=LEAST_PIXELS, le=MOST_PIXELS)]
 
 
@@ -47,16 +38,6 @@ def _flat(value: Any, above: str = "") -> Any:
     return flat
 
 
-def _wrong(message: str, expected: str) -> PydanticCustomError:
-    return PydanticCustomError("scene", "{what}", {"what": message, "expected": expected})
-
-
-class Section(BaseModel):
-    """A part of the scene: unknown keys are faults."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
 class Mesh(Section):
     """A mesh that is made into a deck before the run, by the rules of `zrno convert`.
 
@@ -67,12 +48,12 @@ class Mesh(Section):
     source: str
     target: str
     settings: str | None = None
-    set: Annotated[dict[str, Any], BeforeValidator(_flat)] = {}
+    set: Annotated[dict[str, Any], BeforeValidator(_flat)] = Field(default_factory=dict)
     particles: Literal["solids", "shells", "nodes"] | None = None
     spacing: Positive | None = None
-    part: Annotated[list[str | int], BeforeValidator(_as_list)] = []
+    part: Annotated[list[str | int], BeforeValidator(_as_list)] = Field(default_factory=list)
     dialect: Literal["2.07", "2019-08", "2019-10"] | None = None
-    numbers: dict[str, float] = {}
+    numbers: dict[str, float] = Field(default_factory=dict)
 
 
 class Friction(Section):
@@ -86,7 +67,7 @@ class Friction(Section):
     def _at_least_kinetic(cls, value: float, info: ValidationInfo) -> float:
         kinetic = info.data.get("kinetic", 0.0)
         if value < kinetic:
-            raise _wrong("must be >= kinetic", f"at least {kinetic:g}")
+            raise wrong("must be >= kinetic", f"at least {kinetic:g}")
         return value
 
 
@@ -117,14 +98,14 @@ class Picture(Section):
     @classmethod
     def _time_or_word(cls, value: float | str) -> float | str:
         if isinstance(value, str) and value not in ("last", "all"):
-            raise _wrong("is no time", "a time, last or all")
+            raise wrong("is no time", "a time, last or all")
         return value
 
     @field_validator("view")
     @classmethod
     def _known_view(cls, value: str) -> str:
         if value not in VIEWS:
-            raise _wrong("is no view", "one of " + ", ".join(VIEWS))
+            raise wrong("is no view", "one of " + ", ".join(VIEWS))
         return value
 
 
@@ -134,33 +115,16 @@ class Checkpoint(Section):
     every: Positive
 
 
-class Study(Section):
-    """Speed against error: what varies, and what the answers are measured against."""
-
-    quantity: str
-    vary: dict[str, Annotated[list[float | str], Field(min_length=1)]]
-    tolerance: Positive
-    reference: str | None = None
-    analytic: str | None = None
-
-    @field_validator("analytic")
-    @classmethod
-    def _one_of_two(cls, value: str | None, info: ValidationInfo) -> str | None:
-        if value is not None and info.data.get("reference") is not None:
-            raise _wrong("stands beside study.reference", "one of the two")
-        return value
-
-
 class Scene(Section):
     """A scene. decks: one .mcm (particles), one .dat (finite elements), or both (coupled)."""
 
     decks: Annotated[list[str], Field(min_length=1, max_length=2)]
     title: str = ""
-    meshes: list[Mesh] = []
+    meshes: list[Mesh] = Field(default_factory=list)
     units: Literal["mm-ms-g", "cm-us-g", "m-s-kg", "mm-s-t"] | None = None
     coupling: Coupling | None = None
-    output: Output = Output()
-    render: list[Picture] = []
+    output: Output = Field(default_factory=Output)
+    render: list[Picture] = Field(default_factory=list)
     checkpoint: Checkpoint | None = None
     study: Study | None = None
     _document: Marked = PrivateAttr(default_factory=lambda: Marked("scene", {}, Faults("scene")))
@@ -170,7 +134,7 @@ class Scene(Section):
     def _one_of_a_kind(cls, value: list[str]) -> list[str]:
         kinds = [Path(deck).suffix.lower() for deck in value]
         if set(kinds) - {".mcm", ".dat"} or len(set(kinds)) < len(kinds):
-            raise _wrong(f"{', '.join(value)} do not make a run", "one .mcm, one .dat, or one of each")
+            raise wrong(f"{', '.join(value)} do not make a run", "one .mcm, one .dat, or one of each")
         return value
 
     @property
@@ -178,9 +142,9 @@ class Scene(Section):
         """The labels of the scene's units; None where it names none."""
         return None if self.units is None else SYSTEMS[self.units]
 
-    def fault(self, location: Location, message: str, expected: str = "") -> Fault:
-        """A fault at a place of the scene's file."""
-        place = self._document.place(location)
+    def fault(self, location: Location, message: str, expected: str = "", *, key: bool = False) -> Fault:
+        """A fault at a place of the scene's file: at a value, or at its key."""
+        place = self._document.place(location, key=key)
         return Fault(place.path, place.line, place.column, message, place.text, expected)
 
     def places(self, mesh: int) -> dict[str, tuple[Place, Place]]:
@@ -239,6 +203,8 @@ def load(path: Path | str, options: Mapping[str, Any] | None = None) -> Scene:
     scene._document = document
     _check_files(document, scene, Path(path).parent)
     _check_settings(document, scene, Path(path).parent)
+    for location, message, expected in scene.study.faults() if scene.study else ():
+        document.fault(("study", *location), message, expected)
     document.stop()
     return scene
 
@@ -311,7 +277,7 @@ def _check_files(document: Marked, scene: Scene, folder: Path) -> None:
             named.append((("meshes", i, "settings"), mesh.settings))
     made = {mesh.target for mesh in scene.meshes}
     named += [(("decks", i), deck) for i, deck in enumerate(scene.decks) if deck not in made]
-    if scene.study is not None and scene.study.reference is not None:
+    if scene.study is not None and isinstance(scene.study.reference, str):
         named.append((("study", "reference"), scene.study.reference))
     for i, mesh in enumerate(scene.meshes):
         target = folder / mesh.target

@@ -80,7 +80,7 @@ def test_help_answers_in_under_a_third_of_a_second() -> None:
 
 
 def test_all_commands_take_json_verbose_and_quiet(capsys: pytest.CaptureFixture[str]) -> None:
-    commands = ("convert", "info", "check", "run", "render", "plot", "doctor")
+    commands = ("convert", "info", "check", "run", "render", "plot", "study", "doctor")
     for words in [*([c] for c in commands), ["samples", "list"], ["samples", "copy"]]:
         code, out, _ = _call(capsys, *words, "--help")
         assert code == 0

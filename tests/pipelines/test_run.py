@@ -172,7 +172,7 @@ def test_the_manifest_says_what_was_run(finished: tuple[Path, str]) -> None:
     for key in ("status", "steps", "energy", "wall_seconds", "compile_seconds", "particles"):
         assert manifest[key] == result[key]
     log = (where / "run.log").read_text()
-    assert "cubic spline" in log
+    assert "cubic kernel" in log
     assert f"done: {result['steps']} steps" in log
     assert len(list(where.glob("checkpoint_*.h5"))) == 2
 

@@ -11,6 +11,7 @@ import pytest
 
 from zrno.pipelines import load, run
 from zrno.pipelines.samples import copy
+from zrno.pipelines.study import study
 
 # cm, us, g, Mbar: the sample's numbers
 LENGTH, RADIUS, DENSITY = 3.0, 0.5, 2.7
@@ -138,3 +139,11 @@ def test_ten_metres_a_second_yield_when_the_release_waves_meet(folder: Path) -> 
         materials__left__velocity=[5e-4, 0, 0], materials__right__velocity=[-5e-4, 0, 0],
     )  # fmt: skip
     assert gentle.history["max_plastic_strain"].max() == 0.0
+
+
+def test_the_kinetic_energy_converges_at_first_order(folder: Path) -> None:
+    vary = {"study.vary.spacing": [0.1, 0.05, 1 / 30], "study.vary.step_factor": [0.8]}
+    found = study(folder / "study.yaml", output=folder / "study", options=vary)
+    assert [row["error"] for row in found["rows"]] == pytest.approx([0.0752, 0.0361, 0.0227], rel=0.05)
+    assert found["order_of_convergence"] == pytest.approx(1.1, abs=0.1)
+    assert found["recommended"] is None  # 2 % need a finer one
