@@ -1,0 +1,60 @@
+"""The scene's `sph` section: what a particle run does beyond its deck. `--set sph.KEY=VALUE` gives it for a bare deck."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, ValidationError
+
+from zrno.pipelines.sections import NotNegative, Section
+from zrno.translators.text import Fault, InputError
+
+Part = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
+Row = Annotated[list[float], Field(min_length=4, max_length=4)]
+
+
+class PairViscosity(Section):
+    """Monaghan's viscosity between pairs: linear and quadratic coefficients [-]."""
+
+    alpha: NotNegative = 0.0
+    beta: NotNegative = 0.0
+
+
+class Sph(Section):
+    """Numerics of smoothed particles; None is what the deck says, or by material where `cures` is auto.
+
+    acceleration: rows of time and base acceleration in x, y, z, linear between them, in place of the deck's.
+    """
+
+    kernel: Literal["cubic", "quintic", "lucy", "gaussian", "wendland_c2", "wendland_c4"] = "cubic"
+    cures: Literal["auto", "none"] = "auto"
+    correction: bool | None = None
+    artificial_stress: Part | None = None
+    density_diffusion: Part | None = None
+    stress_diffusion: Part | None = None
+    xsph: Part | None = None
+    pair_viscosity: PairViscosity | None = None
+    acceleration: Annotated[list[Row], Field(min_length=2)] | None = None
+
+
+def of_options(options: Mapping[str, Any]) -> Sph:
+    """The section that the keys `sph.*` of `--set` make. Raises InputError."""
+    data: dict[str, Any] = {}
+    for key, value in options.items():
+        *above, last = key.split(".")[1:]
+        place = data
+        for step in above:
+            place = place.setdefault(step, {})
+        place[last] = value
+    try:
+        return Sph.model_validate(data)
+    except ValidationError as error:
+        faults = []
+        for detail in error.errors():
+            name = ".".join(["sph", *(str(step) for step in detail["loc"])])
+            known = detail["type"] != "extra_forbidden"
+            message = f"{name} has a wrong value" if known else f"unknown key {name}"
+            expected = detail["msg"].removeprefix("Input should be ") if known else ", ".join(Sph.model_fields)
+            faults.append(Fault("--set", 1, 1, message, str(detail["input"]) if known else name, expected))
+        raise InputError(faults) from error
