@@ -14,9 +14,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from numba.extending import overload
-
-from .law import JIT_OPTIONS, PLASTIC_STRAIN, is_law, lame_constants, rotate_state, stress_update
+from .law import PLASTIC_STRAIN, lame_constants, law_body, rotate_state, stress_update
 from .rotation import spin_rotation
 
 
@@ -28,6 +26,8 @@ class VonMisesIsotropic(NamedTuple):
     yield_stress: float
     hardening: float
 
+    rows = 1
+
 
 class VonMisesMixed(NamedTuple):
     """As `VonMisesIsotropic`, with beta [-] < 1. State: plastic strain, back stress deviator (6)."""
@@ -37,6 +37,8 @@ class VonMisesMixed(NamedTuple):
     yield_stress: float
     hardening: float
     beta: float
+
+    rows = 7
 
 
 def von_mises(
@@ -56,119 +58,86 @@ def von_mises(
     return VonMisesMixed(lame, shear, yield_stress, hardening, beta)
 
 
-@overload(stress_update, jit_options=JIT_OPTIONS)
-def _isotropic_update(
-    law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i
-):
-    if not is_law(law, VonMisesIsotropic):
-        return None
-
-    def update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i):
-        g2 = 2.0 * law.shear
-        de_m = (de_xx + de_yy + de_zz) / 3.0
-        s_m = (s_xx + s_yy + s_zz) / 3.0
-        mean = s_m + (3.0 * law.lame + g2) * de_m
-        s_xx += g2 * (de_xx - de_m) - s_m
-        s_yy += g2 * (de_yy - de_m) - s_m
-        s_zz += g2 * (de_zz - de_m) - s_m
-        s_xy += g2 * de_xy
-        s_yz += g2 * de_yz
-        s_zx += g2 * de_zx
-        square = 1.5 * (s_xx * s_xx + s_yy * s_yy + s_zz * s_zz + 2.0 * (s_xy * s_xy + s_yz * s_yz + s_zx * s_zx))
-        strength = law.yield_stress + law.hardening * state[PLASTIC_STRAIN, i]
-        work = 0.0
-        if square > strength * strength:
-            trial = math.sqrt(square)
-            increment = (trial - strength) / (1.5 * g2 + law.hardening)
-            state[PLASTIC_STRAIN, i] += increment
-            scale = 1.0 - 1.5 * g2 * increment / trial
-            s_xx *= scale
-            s_yy *= scale
-            s_zz *= scale
-            s_xy *= scale
-            s_yz *= scale
-            s_zx *= scale
-            work = (strength + 0.5 * law.hardening * increment) * increment
-        return s_xx + mean, s_yy + mean, s_zz + mean, s_xy, s_yz, s_zx, work
-
-    return update
+@law_body(stress_update, VonMisesIsotropic)
+def _isotropic(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i):
+    g2 = 2.0 * law.shear
+    de_m = (de_xx + de_yy + de_zz) / 3.0
+    s_m = (s_xx + s_yy + s_zz) / 3.0
+    mean = s_m + (3.0 * law.lame + g2) * de_m
+    s_xx += g2 * (de_xx - de_m) - s_m
+    s_yy += g2 * (de_yy - de_m) - s_m
+    s_zz += g2 * (de_zz - de_m) - s_m
+    s_xy += g2 * de_xy
+    s_yz += g2 * de_yz
+    s_zx += g2 * de_zx
+    square = 1.5 * (s_xx * s_xx + s_yy * s_yy + s_zz * s_zz + 2.0 * (s_xy * s_xy + s_yz * s_yz + s_zx * s_zx))
+    strength = law.yield_stress + law.hardening * state[PLASTIC_STRAIN, i]
+    work = 0.0
+    if square > strength * strength:
+        trial = math.sqrt(square)
+        increment = (trial - strength) / (1.5 * g2 + law.hardening)
+        state[PLASTIC_STRAIN, i] += increment
+        scale = 1.0 - 1.5 * g2 * increment / trial
+        s_xx *= scale
+        s_yy *= scale
+        s_zz *= scale
+        s_xy *= scale
+        s_yz *= scale
+        s_zx *= scale
+        work = (strength + 0.5 * law.hardening * increment) * increment
+    return s_xx + mean, s_yy + mean, s_zz + mean, s_xy, s_yz, s_zx, work
 
 
-@overload(rotate_state, jit_options=JIT_OPTIONS)
-def _isotropic_rotate(law, w_xy, w_yz, w_zx, state, i):
-    if not is_law(law, VonMisesIsotropic):
-        return None
-
-    def rotate(law, w_xy, w_yz, w_zx, state, i):
-        pass
-
-    return rotate
-
-
-@overload(stress_update, jit_options=JIT_OPTIONS)
-def _mixed_update(
-    law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i
-):
-    if not is_law(law, VonMisesMixed):
-        return None
-
-    def update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i):
-        g2 = 2.0 * law.shear
-        de_m = (de_xx + de_yy + de_zz) / 3.0
-        mean = (s_xx + s_yy + s_zz) / 3.0
-        x_xx = s_xx - mean + g2 * (de_xx - de_m) - state[1, i]
-        x_yy = s_yy - mean + g2 * (de_yy - de_m) - state[2, i]
-        x_zz = s_zz - mean + g2 * (de_zz - de_m) - state[3, i]
-        x_xy = s_xy + g2 * de_xy - state[4, i]
-        x_yz = s_yz + g2 * de_yz - state[5, i]
-        x_zx = s_zx + g2 * de_zx - state[6, i]
-        mean += (3.0 * law.lame + g2) * de_m
-        square = 1.5 * (x_xx * x_xx + x_yy * x_yy + x_zz * x_zz + 2.0 * (x_xy * x_xy + x_yz * x_yz + x_zx * x_zx))
-        strength = law.yield_stress + law.beta * law.hardening * state[PLASTIC_STRAIN, i]
-        work = 0.0
-        scale = 1.0
-        if square > strength * strength:
-            trial = math.sqrt(square)
-            increment = (trial - strength) / (1.5 * g2 + law.hardening)
-            state[PLASTIC_STRAIN, i] += increment
-            scale = 1.0 - 1.5 * g2 * increment / trial
-            back = (1.0 - law.beta) * law.hardening * increment / trial
-            state[1, i] += back * x_xx
-            state[2, i] += back * x_yy
-            state[3, i] += back * x_zz
-            state[4, i] += back * x_xy
-            state[5, i] += back * x_yz
-            state[6, i] += back * x_zx
-            # the relative stress is scaled about the old back stress, which moved by `back` of it
-            scale -= back
-            work = (strength + 0.5 * law.beta * law.hardening * increment) * increment
-        return (
-            scale * x_xx + state[1, i] + mean,
-            scale * x_yy + state[2, i] + mean,
-            scale * x_zz + state[3, i] + mean,
-            scale * x_xy + state[4, i],
-            scale * x_yz + state[5, i],
-            scale * x_zx + state[6, i],
-            work,
-        )
-
-    return update
+@law_body(stress_update, VonMisesMixed)
+def _mixed(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i):
+    g2 = 2.0 * law.shear
+    de_m = (de_xx + de_yy + de_zz) / 3.0
+    mean = (s_xx + s_yy + s_zz) / 3.0
+    x_xx = s_xx - mean + g2 * (de_xx - de_m) - state[1, i]
+    x_yy = s_yy - mean + g2 * (de_yy - de_m) - state[2, i]
+    x_zz = s_zz - mean + g2 * (de_zz - de_m) - state[3, i]
+    x_xy = s_xy + g2 * de_xy - state[4, i]
+    x_yz = s_yz + g2 * de_yz - state[5, i]
+    x_zx = s_zx + g2 * de_zx - state[6, i]
+    mean += (3.0 * law.lame + g2) * de_m
+    square = 1.5 * (x_xx * x_xx + x_yy * x_yy + x_zz * x_zz + 2.0 * (x_xy * x_xy + x_yz * x_yz + x_zx * x_zx))
+    strength = law.yield_stress + law.beta * law.hardening * state[PLASTIC_STRAIN, i]
+    work = 0.0
+    scale = 1.0
+    if square > strength * strength:
+        trial = math.sqrt(square)
+        increment = (trial - strength) / (1.5 * g2 + law.hardening)
+        state[PLASTIC_STRAIN, i] += increment
+        scale = 1.0 - 1.5 * g2 * increment / trial
+        back = (1.0 - law.beta) * law.hardening * increment / trial
+        state[1, i] += back * x_xx
+        state[2, i] += back * x_yy
+        state[3, i] += back * x_zz
+        state[4, i] += back * x_xy
+        state[5, i] += back * x_yz
+        state[6, i] += back * x_zx
+        # the relative stress is scaled about the old back stress, which moved by `back` of it
+        scale -= back
+        work = (strength + 0.5 * law.beta * law.hardening * increment) * increment
+    return (
+        scale * x_xx + state[1, i] + mean,
+        scale * x_yy + state[2, i] + mean,
+        scale * x_zz + state[3, i] + mean,
+        scale * x_xy + state[4, i],
+        scale * x_yz + state[5, i],
+        scale * x_zx + state[6, i],
+        work,
+    )
 
 
-@overload(rotate_state, jit_options=JIT_OPTIONS)
+@law_body(rotate_state, VonMisesMixed)
 def _mixed_rotate(law, w_xy, w_yz, w_zx, state, i):
-    if not is_law(law, VonMisesMixed):
-        return None
-
-    def rotate(law, w_xy, w_yz, w_zx, state, i):
-        a_xx, a_yy, a_zz, a_xy, a_yz, a_zx = spin_rotation(
-            w_xy, w_yz, w_zx, state[1, i], state[2, i], state[3, i], state[4, i], state[5, i], state[6, i]
-        )
-        state[1, i] = a_xx
-        state[2, i] = a_yy
-        state[3, i] = a_zz
-        state[4, i] = a_xy
-        state[5, i] = a_yz
-        state[6, i] = a_zx
-
-    return rotate
+    a_xx, a_yy, a_zz, a_xy, a_yz, a_zx = spin_rotation(
+        w_xy, w_yz, w_zx, state[1, i], state[2, i], state[3, i], state[4, i], state[5, i], state[6, i]
+    )
+    state[1, i] = a_xx
+    state[2, i] = a_yy
+    state[3, i] = a_zz
+    state[4, i] = a_xy
+    state[5, i] = a_yz
+    state[6, i] = a_zx
