@@ -13,8 +13,6 @@ class Elastic(NamedTuple):
     lame: float
     shear: float
 
-    rows = 0
-
     @classmethod
     def from_engineering(cls, young: float, poisson: float) -> Elastic:
         """From Young's modulus [pressure] and Poisson's ratio [-]."""

@@ -76,11 +76,23 @@ def rotate_state(law, w_xy, w_yz, w_zx, state, i):
 
 @dispatched
 def wave_speed(law, rho, e, state, i):
-    """Speed of longitudinal waves now: sqrt((lambda + 2 G)/rho) but for laws with an equation of state.
+    """Speed of longitudinal waves now: sqrt((lambda + 2 G)/rho), but for laws with an equation of state.
 
     rho: density; e: energy per unit mass. See `constant_wave`.
     """
     return math.sqrt((law.lame + 2.0 * law.shear) / rho)
+
+
+@dispatched
+def state_rows(law):
+    """History variables that a law keeps at a point."""
+    return 0
+
+
+@dispatched
+def constant_wave(law):
+    """Whether c sqrt(rho) is constant. Else `wave_speed` depends on the energy too, and is to be asked at each step."""
+    return True
 
 
 def sound_speed(law: Any, density: float, energy: float = 0.0) -> float:

@@ -5,6 +5,8 @@ H = E ET / (E - ET). beta = 1 isotropic, 0 kinematic. Steps of the return:
 1. trial deviator s* = s + 2 G de', relative to the back stress: xi = s* - a, xi_eq = sqrt(3/2) |xi|
 2. dep = (xi_eq - Y) / (3 G + H) if positive
 3. s = s* - (3 G dep / xi_eq) xi,  a += ((1 - beta) H dep / xi_eq) xi,  Y += beta H dep
+With a table or a rate (`VonMisesCurve`) the hardening is isotropic and the return as exact; Cowper & Symonds 1957
+raise the whole curve by 1 + (rate/C)^(1/p), rate = sqrt(2/3 e':e') of the whole deviatoric strain.
 The pressure stays elastic. One increment is exact for radial paths. Without kinematic hardening there is no back stress
 in the state at all (`VonMisesIsotropic`): a scene pays for what it uses.
 """
@@ -14,7 +16,9 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from .law import PLASTIC_STRAIN, lame_constants, law_body, rotate_state, stress_update
+from .hardening import Linear, Table, radial_return
+from .invariants import elastic_trial, second_invariant
+from .law import PLASTIC_STRAIN, lame_constants, law_body, rotate_state, state_rows, stress_update
 from .rotation import spin_rotation
 
 
@@ -26,8 +30,6 @@ class VonMisesIsotropic(NamedTuple):
     yield_stress: float
     hardening: float
 
-    rows = 1
-
 
 class VonMisesMixed(NamedTuple):
     """As `VonMisesIsotropic`, with beta [-] < 1. State: plastic strain, back stress deviator (6)."""
@@ -38,7 +40,24 @@ class VonMisesMixed(NamedTuple):
     hardening: float
     beta: float
 
-    rows = 7
+
+class VonMisesCurve(NamedTuple):
+    """lame, shear: lambda, G [pressure]; rate: C [1/time], inf without one; power: 1/p. State: plastic strain."""
+
+    lame: float
+    shear: float
+    hardening: Linear | Table
+    rate: float
+    power: float
+
+
+def von_mises_curve(
+    young: float, poisson: float, hardening: Linear | Table, *, rate: float = math.inf, exponent: float = 1.0
+) -> VonMisesCurve:
+    """The law with isotropic hardening; rate, exponent: Cowper and Symonds' C [1/time] and p."""
+    if not (rate > 0.0 and exponent > 0.0):
+        raise ValueError(f"Cowper and Symonds' C {rate!r} and p {exponent!r} must be positive")
+    return VonMisesCurve(*lame_constants(young, poisson), hardening, rate, 1.0 / exponent)
 
 
 def von_mises(
@@ -141,3 +160,35 @@ def _mixed_rotate(law, w_xy, w_yz, w_zx, state, i):
     state[4, i] = a_xy
     state[5, i] = a_yz
     state[6, i] = a_zx
+
+
+@law_body(stress_update, VonMisesCurve)
+def _curve(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i):
+    volumetric, mean, x_xx, x_yy, x_zz, x_xy, x_yz, x_zx = elastic_trial(
+        law.shear, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx
+    )
+    mean += (law.lame + 2.0 / 3.0 * law.shear) * volumetric
+    trial = math.sqrt(3.0 * second_invariant(x_xx, x_yy, x_zz, x_xy, x_yz, x_zx))
+    factor = 1.0
+    if law.rate < math.inf and dt > 0.0:
+        third = volumetric / 3.0
+        square = second_invariant(de_xx - third, de_yy - third, de_zz - third, de_xy, de_yz, de_zx)
+        factor += math.pow(math.sqrt(4.0 / 3.0 * square) / (dt * law.rate), law.power)
+    increment, _, work = radial_return(
+        law.hardening, trial, state[PLASTIC_STRAIN, i], 3.0 * law.shear, factor, 0.0
+    )  # fmt: skip
+    scale = 1.0
+    if increment > 0.0:
+        state[PLASTIC_STRAIN, i] += increment
+        scale = 1.0 - 3.0 * law.shear * increment / trial
+    return scale * x_xx + mean, scale * x_yy + mean, scale * x_zz + mean, scale * x_xy, scale * x_yz, scale * x_zx, work
+
+
+@law_body(state_rows, VonMisesIsotropic, VonMisesCurve)
+def _rows(law):
+    return 1
+
+
+@law_body(state_rows, VonMisesMixed)
+def _more_rows(law):
+    return 7
