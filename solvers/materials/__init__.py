@@ -1,26 +1,74 @@
-"""Material laws: one law a file, a stress update at one point, used by particles and finite elements alike."""
+"""Material laws: one law a file, a stress update at one point, used by particles and finite elements alike.
+
+The table of laws, what each is a model of and what it costs, is in README.md beside this file.
+"""
 
 from __future__ import annotations
 
+from .cap import Cap, KinematicCap, cap
+from .cap_return import CapHardening, CapHardeningGeneral
+from .drucker_prager import DruckerPrager, drucker_prager, drucker_prager_soil
 from .elastic import Elastic
-from .law import PLASTIC_STRAIN, sound_speed
-from .von_mises import VonMisesIsotropic, VonMisesMixed, von_mises
+from .eos import Gruneisen, LinearPolynomial, MieGruneisen, Monaghan, PerfectGas, Tait
+from .failing import Failing, failing
+from .fluid import Fluid, fluid
+from .hardening import Linear, Table, table
+from .hydro import Hydro, hydro
+from .law import PLASTIC_STRAIN, constant_wave, sound_speed, state_rows
+from .mohr_coulomb import MohrCoulomb, mohr_coulomb
+from .von_mises import VonMisesCurve, VonMisesIsotropic, VonMisesMixed, von_mises, von_mises_curve
 
-Law = Elastic | VonMisesIsotropic | VonMisesMixed
-
-
-def state_rows(law: Law) -> int:
-    """History variables that a law keeps at a point."""
-    return {Elastic: 0, VonMisesIsotropic: 1, VonMisesMixed: 7}[type(law)]
-
+Eos = Gruneisen | LinearPolynomial | MieGruneisen | Monaghan | PerfectGas | Tait
+Law = (
+    Cap
+    | DruckerPrager
+    | Elastic
+    | Failing
+    | Fluid
+    | Hydro
+    | KinematicCap
+    | MohrCoulomb
+    | VonMisesCurve
+    | VonMisesIsotropic
+    | VonMisesMixed
+)
 
 __all__ = [
     "PLASTIC_STRAIN",
+    "Cap",
+    "CapHardening",
+    "CapHardeningGeneral",
+    "DruckerPrager",
     "Elastic",
+    "Eos",
+    "Failing",
+    "Fluid",
+    "Gruneisen",
+    "Hydro",
+    "KinematicCap",
     "Law",
+    "Linear",
+    "LinearPolynomial",
+    "MieGruneisen",
+    "MohrCoulomb",
+    "Monaghan",
+    "PerfectGas",
+    "Table",
+    "Tait",
+    "VonMisesCurve",
     "VonMisesIsotropic",
     "VonMisesMixed",
+    "cap",
+    "constant_wave",
+    "drucker_prager",
+    "drucker_prager_soil",
+    "failing",
+    "fluid",
+    "hydro",
+    "mohr_coulomb",
     "sound_speed",
     "state_rows",
+    "table",
     "von_mises",
+    "von_mises_curve",
 ]

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from numba.extending import overload
-
-from .law import JIT_OPTIONS, is_law, lame_constants, rotate_state, stress_update
+from .law import lame_constants, law_body, stress_update
 
 
 class Elastic(NamedTuple):
@@ -21,35 +19,16 @@ class Elastic(NamedTuple):
         return cls(*lame_constants(young, poisson))
 
 
-@overload(stress_update, jit_options=JIT_OPTIONS)
-def _elastic_update(
-    law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i
-):
-    if not is_law(law, Elastic):
-        return None
-
-    def update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i):
-        g2 = 2.0 * law.shear
-        volumetric = law.lame * (de_xx + de_yy + de_zz)
-        return (
-            s_xx + volumetric + g2 * de_xx,
-            s_yy + volumetric + g2 * de_yy,
-            s_zz + volumetric + g2 * de_zz,
-            s_xy + g2 * de_xy,
-            s_yz + g2 * de_yz,
-            s_zx + g2 * de_zx,
-            0.0,
-        )
-
-    return update
-
-
-@overload(rotate_state, jit_options=JIT_OPTIONS)
-def _elastic_rotate(law, w_xy, w_yz, w_zx, state, i):
-    if not is_law(law, Elastic):
-        return None
-
-    def rotate(law, w_xy, w_yz, w_zx, state, i):
-        pass
-
-    return rotate
+@law_body(stress_update, Elastic)
+def _update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i):
+    g2 = 2.0 * law.shear
+    volumetric = law.lame * (de_xx + de_yy + de_zz)
+    return (
+        s_xx + volumetric + g2 * de_xx,
+        s_yy + volumetric + g2 * de_yy,
+        s_zz + volumetric + g2 * de_zz,
+        s_xy + g2 * de_xy,
+        s_yz + g2 * de_yz,
+        s_zx + g2 * de_zx,
+        0.0,
+    )

@@ -1,17 +1,24 @@
 """The contract of every small-strain material law, and its dispatch.
 
-A law is a NamedTuple of its numbers. Jitted loops call the two functions below with it; `numba.extending.overload`
-picks the body by the tuple's class, so a loop is compiled for the law that a scene uses and still cached on disk.
+A law is a NamedTuple of its numbers; nested parts (an equation of state, a hardening curve) are NamedTuples in it.
+Jitted loops call the functions below with it: `numba.extending.overload` picks the body that `law_body` registered for
+the tuple's class, so a loop is compiled for the law that a scene uses and is still cached on disk. Called from Python
+they run the same body without compiling it.
 
 Stress: six components xx yy zz xy yz zx, tension positive. Strain increments: six tensor components (not doubled
-shears) in the same order. state: (k, n) history variables, column i belongs to the point; None where a law has none.
+shears) in the same order. state: (k, n) history variables, column i belongs to the point, all zero in the virgin
+material; None where a law has none.
 """
 
 from __future__ import annotations
 
+import functools
+import math
+from collections.abc import Callable
 from typing import Any
 
 from numba import types
+from numba.extending import overload
 
 from ..jit import FASTMATH
 
@@ -19,12 +26,38 @@ JIT_OPTIONS = {"fastmath": FASTMATH, "error_model": "numpy"}
 
 PLASTIC_STRAIN = 0  # row of the equivalent plastic strain in the state of every law that has one
 
-
-def is_law(numba_type: Any, law: type) -> bool:
-    """Whether a numba type is the NamedTuple `law`."""
-    return isinstance(numba_type, types.BaseNamedTuple) and numba_type.instance_class is law
+Function = Callable[..., Any]
+_BODIES: dict[str, dict[type, Function]] = {}
 
 
+def dispatched(function: Function) -> Any:
+    """A function whose body depends on the class of its first argument; its own body is for the classes without one."""
+    bodies = _BODIES.setdefault(function.__qualname__, {})
+
+    @functools.wraps(function)
+    def call(law, *rest):
+        return bodies.get(type(law), function)(law, *rest)
+
+    @functools.wraps(function)
+    def choose(law, *rest):
+        return bodies.get(law.instance_class, function) if isinstance(law, types.BaseNamedTuple) else None
+
+    overload(call, jit_options=JIT_OPTIONS)(choose)
+    return call
+
+
+def law_body(function: Any, *laws: type) -> Callable[[Function], Function]:
+    """Register a body of a dispatched function for laws of these classes; its arguments have the function's names."""
+
+    def register(body: Function) -> Function:
+        for law in laws:
+            _BODIES[function.__qualname__][law] = body
+        return body
+
+    return register
+
+
+@dispatched
 def stress_update(
     law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i
 ):
@@ -33,17 +66,38 @@ def stress_update(
     rho: density after the increment; e: energy per unit mass before it; dt: how long it takes. A law that does not ask
     for them does not pay for them. Updates state[:, i].
     """
-    raise NotImplementedError("called from jitted code only; `point.drive` is for Python")
+    raise NotImplementedError("no law of that class")
 
 
+@dispatched
 def rotate_state(law, w_xy, w_yz, w_zx, state, i):
-    """Turn the tensors in state[:, i] by the spin increment (w_ij = (du_i/dx_j - du_j/dx_i)/2)."""
-    raise NotImplementedError("called from jitted code only")
+    """Turn the tensors in state[:, i] by the spin increment (w_ij = (du_i/dx_j - du_j/dx_i)/2), where there are any."""
 
 
-def sound_speed(law: Any, density: float) -> float:
-    """Speed of longitudinal waves sqrt((lambda + 2 G)/rho)."""
-    return float(((law.lame + 2.0 * law.shear) / density) ** 0.5)
+@dispatched
+def wave_speed(law, rho, e, state, i):
+    """Speed of longitudinal waves now: sqrt((lambda + 2 G)/rho), but for laws with an equation of state.
+
+    rho: density; e: energy per unit mass. See `constant_wave`.
+    """
+    return math.sqrt((law.lame + 2.0 * law.shear) / rho)
+
+
+@dispatched
+def state_rows(law):
+    """History variables that a law keeps at a point."""
+    return 0
+
+
+@dispatched
+def constant_wave(law):
+    """Whether c sqrt(rho) is constant. Else `wave_speed` depends on the energy too, and is to be asked at each step."""
+    return True
+
+
+def sound_speed(law: Any, density: float, energy: float = 0.0) -> float:
+    """Speed of longitudinal waves in the virgin material. energy: per unit mass."""
+    return float(wave_speed(law, density, energy, None, 0))
 
 
 def lame_constants(young: float, poisson: float) -> tuple[float, float]:

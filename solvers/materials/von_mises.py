@@ -5,6 +5,8 @@ H = E ET / (E - ET). beta = 1 isotropic, 0 kinematic. Steps of the return:
 1. trial deviator s* = s + 2 G de', relative to the back stress: xi = s* - a, xi_eq = sqrt(3/2) |xi|
 2. dep = (xi_eq - Y) / (3 G + H) if positive
 3. s = s* - (3 G dep / xi_eq) xi,  a += ((1 - beta) H dep / xi_eq) xi,  Y += beta H dep
+With a table or a rate (`VonMisesCurve`) the hardening is isotropic and the return as exact; Cowper & Symonds 1957
+raise the whole curve by 1 + (rate/C)^(1/p), rate = sqrt(2/3 e':e') of the whole deviatoric strain.
 The pressure stays elastic. One increment is exact for radial paths. Without kinematic hardening there is no back stress
 in the state at all (`VonMisesIsotropic`): a scene pays for what it uses.
 """
@@ -14,9 +16,9 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from numba.extending import overload
-
-from .law import JIT_OPTIONS, PLASTIC_STRAIN, is_law, lame_constants, rotate_state, stress_update
+from .hardening import Linear, Table, radial_return
+from .invariants import elastic_trial, second_invariant
+from .law import PLASTIC_STRAIN, lame_constants, law_body, rotate_state, state_rows, stress_update
 from .rotation import spin_rotation
 
 
@@ -39,6 +41,25 @@ class VonMisesMixed(NamedTuple):
     beta: float
 
 
+class VonMisesCurve(NamedTuple):
+    """lame, shear: lambda, G [pressure]; rate: C [1/time], inf without one; power: 1/p. State: plastic strain."""
+
+    lame: float
+    shear: float
+    hardening: Linear | Table
+    rate: float
+    power: float
+
+
+def von_mises_curve(
+    young: float, poisson: float, hardening: Linear | Table, *, rate: float = math.inf, exponent: float = 1.0
+) -> VonMisesCurve:
+    """The law with isotropic hardening; rate, exponent: Cowper and Symonds' C [1/time] and p."""
+    if not (rate > 0.0 and exponent > 0.0):
+        raise ValueError(f"Cowper and Symonds' C {rate!r} and p {exponent!r} must be positive")
+    return VonMisesCurve(*lame_constants(young, poisson), hardening, rate, 1.0 / exponent)
+
+
 def von_mises(
     young: float, poisson: float, yield_stress: float, tangent_modulus: float = 0.0, beta: float = 1.0
 ) -> VonMisesIsotropic | VonMisesMixed:
@@ -56,119 +77,118 @@ def von_mises(
     return VonMisesMixed(lame, shear, yield_stress, hardening, beta)
 
 
-@overload(stress_update, jit_options=JIT_OPTIONS)
-def _isotropic_update(
-    law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i
-):
-    if not is_law(law, VonMisesIsotropic):
-        return None
-
-    def update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i):
-        g2 = 2.0 * law.shear
-        de_m = (de_xx + de_yy + de_zz) / 3.0
-        s_m = (s_xx + s_yy + s_zz) / 3.0
-        mean = s_m + (3.0 * law.lame + g2) * de_m
-        s_xx += g2 * (de_xx - de_m) - s_m
-        s_yy += g2 * (de_yy - de_m) - s_m
-        s_zz += g2 * (de_zz - de_m) - s_m
-        s_xy += g2 * de_xy
-        s_yz += g2 * de_yz
-        s_zx += g2 * de_zx
-        square = 1.5 * (s_xx * s_xx + s_yy * s_yy + s_zz * s_zz + 2.0 * (s_xy * s_xy + s_yz * s_yz + s_zx * s_zx))
-        strength = law.yield_stress + law.hardening * state[PLASTIC_STRAIN, i]
-        work = 0.0
-        if square > strength * strength:
-            trial = math.sqrt(square)
-            increment = (trial - strength) / (1.5 * g2 + law.hardening)
-            state[PLASTIC_STRAIN, i] += increment
-            scale = 1.0 - 1.5 * g2 * increment / trial
-            s_xx *= scale
-            s_yy *= scale
-            s_zz *= scale
-            s_xy *= scale
-            s_yz *= scale
-            s_zx *= scale
-            work = (strength + 0.5 * law.hardening * increment) * increment
-        return s_xx + mean, s_yy + mean, s_zz + mean, s_xy, s_yz, s_zx, work
-
-    return update
+@law_body(stress_update, VonMisesIsotropic)
+def _isotropic(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i):
+    g2 = 2.0 * law.shear
+    de_m = (de_xx + de_yy + de_zz) / 3.0
+    s_m = (s_xx + s_yy + s_zz) / 3.0
+    mean = s_m + (3.0 * law.lame + g2) * de_m
+    s_xx += g2 * (de_xx - de_m) - s_m
+    s_yy += g2 * (de_yy - de_m) - s_m
+    s_zz += g2 * (de_zz - de_m) - s_m
+    s_xy += g2 * de_xy
+    s_yz += g2 * de_yz
+    s_zx += g2 * de_zx
+    square = 1.5 * (s_xx * s_xx + s_yy * s_yy + s_zz * s_zz + 2.0 * (s_xy * s_xy + s_yz * s_yz + s_zx * s_zx))
+    strength = law.yield_stress + law.hardening * state[PLASTIC_STRAIN, i]
+    work = 0.0
+    if square > strength * strength:
+        trial = math.sqrt(square)
+        increment = (trial - strength) / (1.5 * g2 + law.hardening)
+        state[PLASTIC_STRAIN, i] += increment
+        scale = 1.0 - 1.5 * g2 * increment / trial
+        s_xx *= scale
+        s_yy *= scale
+        s_zz *= scale
+        s_xy *= scale
+        s_yz *= scale
+        s_zx *= scale
+        work = (strength + 0.5 * law.hardening * increment) * increment
+    return s_xx + mean, s_yy + mean, s_zz + mean, s_xy, s_yz, s_zx, work
 
 
-@overload(rotate_state, jit_options=JIT_OPTIONS)
-def _isotropic_rotate(law, w_xy, w_yz, w_zx, state, i):
-    if not is_law(law, VonMisesIsotropic):
-        return None
-
-    def rotate(law, w_xy, w_yz, w_zx, state, i):
-        pass
-
-    return rotate
-
-
-@overload(stress_update, jit_options=JIT_OPTIONS)
-def _mixed_update(
-    law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i
-):
-    if not is_law(law, VonMisesMixed):
-        return None
-
-    def update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i):
-        g2 = 2.0 * law.shear
-        de_m = (de_xx + de_yy + de_zz) / 3.0
-        mean = (s_xx + s_yy + s_zz) / 3.0
-        x_xx = s_xx - mean + g2 * (de_xx - de_m) - state[1, i]
-        x_yy = s_yy - mean + g2 * (de_yy - de_m) - state[2, i]
-        x_zz = s_zz - mean + g2 * (de_zz - de_m) - state[3, i]
-        x_xy = s_xy + g2 * de_xy - state[4, i]
-        x_yz = s_yz + g2 * de_yz - state[5, i]
-        x_zx = s_zx + g2 * de_zx - state[6, i]
-        mean += (3.0 * law.lame + g2) * de_m
-        square = 1.5 * (x_xx * x_xx + x_yy * x_yy + x_zz * x_zz + 2.0 * (x_xy * x_xy + x_yz * x_yz + x_zx * x_zx))
-        strength = law.yield_stress + law.beta * law.hardening * state[PLASTIC_STRAIN, i]
-        work = 0.0
-        scale = 1.0
-        if square > strength * strength:
-            trial = math.sqrt(square)
-            increment = (trial - strength) / (1.5 * g2 + law.hardening)
-            state[PLASTIC_STRAIN, i] += increment
-            scale = 1.0 - 1.5 * g2 * increment / trial
-            back = (1.0 - law.beta) * law.hardening * increment / trial
-            state[1, i] += back * x_xx
-            state[2, i] += back * x_yy
-            state[3, i] += back * x_zz
-            state[4, i] += back * x_xy
-            state[5, i] += back * x_yz
-            state[6, i] += back * x_zx
-            # the relative stress is scaled about the old back stress, which moved by `back` of it
-            scale -= back
-            work = (strength + 0.5 * law.beta * law.hardening * increment) * increment
-        return (
-            scale * x_xx + state[1, i] + mean,
-            scale * x_yy + state[2, i] + mean,
-            scale * x_zz + state[3, i] + mean,
-            scale * x_xy + state[4, i],
-            scale * x_yz + state[5, i],
-            scale * x_zx + state[6, i],
-            work,
-        )
-
-    return update
+@law_body(stress_update, VonMisesMixed)
+def _mixed(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i):
+    g2 = 2.0 * law.shear
+    de_m = (de_xx + de_yy + de_zz) / 3.0
+    mean = (s_xx + s_yy + s_zz) / 3.0
+    x_xx = s_xx - mean + g2 * (de_xx - de_m) - state[1, i]
+    x_yy = s_yy - mean + g2 * (de_yy - de_m) - state[2, i]
+    x_zz = s_zz - mean + g2 * (de_zz - de_m) - state[3, i]
+    x_xy = s_xy + g2 * de_xy - state[4, i]
+    x_yz = s_yz + g2 * de_yz - state[5, i]
+    x_zx = s_zx + g2 * de_zx - state[6, i]
+    mean += (3.0 * law.lame + g2) * de_m
+    square = 1.5 * (x_xx * x_xx + x_yy * x_yy + x_zz * x_zz + 2.0 * (x_xy * x_xy + x_yz * x_yz + x_zx * x_zx))
+    strength = law.yield_stress + law.beta * law.hardening * state[PLASTIC_STRAIN, i]
+    work = 0.0
+    scale = 1.0
+    if square > strength * strength:
+        trial = math.sqrt(square)
+        increment = (trial - strength) / (1.5 * g2 + law.hardening)
+        state[PLASTIC_STRAIN, i] += increment
+        scale = 1.0 - 1.5 * g2 * increment / trial
+        back = (1.0 - law.beta) * law.hardening * increment / trial
+        state[1, i] += back * x_xx
+        state[2, i] += back * x_yy
+        state[3, i] += back * x_zz
+        state[4, i] += back * x_xy
+        state[5, i] += back * x_yz
+        state[6, i] += back * x_zx
+        # the relative stress is scaled about the old back stress, which moved by `back` of it
+        scale -= back
+        work = (strength + 0.5 * law.beta * law.hardening * increment) * increment
+    return (
+        scale * x_xx + state[1, i] + mean,
+        scale * x_yy + state[2, i] + mean,
+        scale * x_zz + state[3, i] + mean,
+        scale * x_xy + state[4, i],
+        scale * x_yz + state[5, i],
+        scale * x_zx + state[6, i],
+        work,
+    )
 
 
-@overload(rotate_state, jit_options=JIT_OPTIONS)
+@law_body(rotate_state, VonMisesMixed)
 def _mixed_rotate(law, w_xy, w_yz, w_zx, state, i):
-    if not is_law(law, VonMisesMixed):
-        return None
+    a_xx, a_yy, a_zz, a_xy, a_yz, a_zx = spin_rotation(
+        w_xy, w_yz, w_zx, state[1, i], state[2, i], state[3, i], state[4, i], state[5, i], state[6, i]
+    )
+    state[1, i] = a_xx
+    state[2, i] = a_yy
+    state[3, i] = a_zz
+    state[4, i] = a_xy
+    state[5, i] = a_yz
+    state[6, i] = a_zx
 
-    def rotate(law, w_xy, w_yz, w_zx, state, i):
-        a_xx, a_yy, a_zz, a_xy, a_yz, a_zx = spin_rotation(
-            w_xy, w_yz, w_zx, state[1, i], state[2, i], state[3, i], state[4, i], state[5, i], state[6, i]
-        )
-        state[1, i] = a_xx
-        state[2, i] = a_yy
-        state[3, i] = a_zz
-        state[4, i] = a_xy
-        state[5, i] = a_yz
-        state[6, i] = a_zx
 
-    return rotate
+@law_body(stress_update, VonMisesCurve)
+def _curve(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i):
+    volumetric, mean, x_xx, x_yy, x_zz, x_xy, x_yz, x_zx = elastic_trial(
+        law.shear, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx
+    )
+    mean += (law.lame + 2.0 / 3.0 * law.shear) * volumetric
+    trial = math.sqrt(3.0 * second_invariant(x_xx, x_yy, x_zz, x_xy, x_yz, x_zx))
+    factor = 1.0
+    if law.rate < math.inf and dt > 0.0:
+        third = volumetric / 3.0
+        square = second_invariant(de_xx - third, de_yy - third, de_zz - third, de_xy, de_yz, de_zx)
+        factor += math.pow(math.sqrt(4.0 / 3.0 * square) / (dt * law.rate), law.power)
+    increment, _, work = radial_return(
+        law.hardening, trial, state[PLASTIC_STRAIN, i], 3.0 * law.shear, factor, 0.0
+    )  # fmt: skip
+    scale = 1.0
+    if increment > 0.0:
+        state[PLASTIC_STRAIN, i] += increment
+        scale = 1.0 - 3.0 * law.shear * increment / trial
+    return scale * x_xx + mean, scale * x_yy + mean, scale * x_zz + mean, scale * x_xy, scale * x_yz, scale * x_zx, work
+
+
+@law_body(state_rows, VonMisesIsotropic, VonMisesCurve)
+def _rows(law):
+    return 1
+
+
+@law_body(state_rows, VonMisesMixed)
+def _more_rows(law):
+    return 7

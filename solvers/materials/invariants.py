@@ -1,0 +1,32 @@
+"""What the laws share of tensor algebra: the elastic trial stress and its second invariant."""
+
+from __future__ import annotations
+
+from ..jit import kernel
+
+
+@kernel
+def elastic_trial(
+    shear, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx
+):  # fmt: skip
+    """Volume increment, mean stress before it, and the deviator (6) of an elastic strain increment."""
+    volumetric = de_xx + de_yy + de_zz
+    mean = (s_xx + s_yy + s_zz) / 3.0
+    g2 = 2.0 * shear
+    shift = mean + g2 * volumetric / 3.0
+    return (
+        volumetric,
+        mean,
+        s_xx + g2 * de_xx - shift,
+        s_yy + g2 * de_yy - shift,
+        s_zz + g2 * de_zz - shift,
+        s_xy + g2 * de_xy,
+        s_yz + g2 * de_yz,
+        s_zx + g2 * de_zx,
+    )
+
+
+@kernel
+def second_invariant(s_xx, s_yy, s_zz, s_xy, s_yz, s_zx):
+    """J2 = s:s/2 of a deviator."""
+    return 0.5 * (s_xx * s_xx + s_yy * s_yy + s_zz * s_zz) + s_xy * s_xy + s_yz * s_yz + s_zx * s_zx
