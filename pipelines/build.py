@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from zrno.pipelines.method import Sph
 from zrno.solvers.errors import Unsupported
 from zrno.solvers.materials import Elastic, Law, von_mises
-from zrno.solvers.sph import Body, Problem
+from zrno.solvers.sph import Body, Cures, Plane, Problem, defaults
 from zrno.translators.model import Material, Model, ParticleControl
 from zrno.translators.text import Fault, InputError
 from zrno.translators.yaml_marks import Place
@@ -21,13 +22,21 @@ _FIXED = np.array(
 
 STEP_FACTOR = 0.8
 QUADRATIC, LINEAR = 1.5, 0.06  # artificial viscosity where the deck leaves it blank
+XSPH = 0.1  # the original program's factor
 LEAST_DENSITY, MOST_DENSITY = 1e-10, 1e10
 
 
 def particle_problem(
-    model: Model, path: str, *, places: Mapping[str, Place] | None = None, original: bool = False
+    model: Model,
+    path: str,
+    *,
+    places: Mapping[str, Place] | None = None,
+    original: bool = False,
+    method: Sph | None = None,
 ) -> Problem:
-    """The problem that a particle deck poses. path, places: see `refusals`; original: as the original program does.
+    """The problem that a particle deck poses.
+
+    path, places: see `refusals`; original: as the original program does; method: the numerics beyond the deck.
 
     Raises InputError for what the deck asks and this solver does not do.
     """
@@ -38,8 +47,9 @@ def particle_problem(
     assert control is not None
     assert particles is not None
     numbers = sorted(model.materials)
+    chosen = Sph(cures="none") if original else method or Sph()
     bodies = [
-        _body(model.materials[number], control.contact_laws[k] if control.contact else (0.0, 0.0))
+        _body(model.materials[number], control.contact_laws[k] if control.contact else (0.0, 0.0), chosen)
         for k, number in enumerate(numbers)
     ]
     n = len(particles)
@@ -70,17 +80,48 @@ def particle_problem(
         potential=control.contact == 1,
         body_force=control.base_acceleration or (0.0, 0.0, 0.0),
         original=original,
+        body_curve=_curve(chosen),
+        kernel=chosen.kernel,
+        h_option=control.h_option,
+        relaxation=control.dynamic_relaxation if 0.1 < control.dynamic_relaxation < 1.0 else 1.0,
+        planes=_planes(control),
+        cures=_cures(control, chosen, [body.law for body in bodies]),
     )
 
 
-def _body(material: Material, contact: tuple[float, float]) -> Body:
+def _curve(method: Sph) -> tuple[Any, Any] | None:
+    if method.acceleration is None:
+        return None
+    table = np.array(method.acceleration)
+    return table[:, 0], table[:, 1:]
+
+
+def _planes(control: ParticleControl) -> tuple[Plane, ...]:
+    """The deck's planes xmin, xmax, ymin, ..., as far as its dimension goes."""
+    given = enumerate((control.planes or [])[: 2 * control.dimension])
+    return tuple(Plane(k // 2, 1 if k % 2 else -1, kind, position) for k, (kind, position) in given if kind)
+
+
+def _cures(control: ParticleControl, method: Sph, laws: list[Law]) -> Cures:
+    automatic = defaults.artificial_stress(laws) if method.cures == "auto" else 0.0
+    return Cures(
+        correction=bool(control.discretisation) if method.correction is None else method.correction,
+        artificial_stress=automatic if method.artificial_stress is None else method.artificial_stress,
+        xsph=(XSPH if control.velocity_option else 0.0) if method.xsph is None else method.xsph,
+    )
+
+
+def _body(material: Material, contact: tuple[float, float], method: Sph) -> Body:
     def given(value: float | None, default: float) -> float:
         return value if value else default
 
+    law = _law(material)
+    automatic = method.cures == "auto"
+    density, stress, pair = method.density_diffusion, method.stress_diffusion, method.pair_viscosity
     return Body(
         number=material.id,
         name=material.name,
-        law=_law(material),
+        law=law,
         density=material.density,
         linear=given(material.viscosity_linear, LINEAR),
         quadratic=given(material.viscosity_quadratic, QUADRATIC),
@@ -88,6 +129,10 @@ def _body(material: Material, contact: tuple[float, float]) -> Body:
         most=given(material.rho_max, MOST_DENSITY),
         strength=contact[0],
         exponent=contact[1],
+        alpha=pair.alpha if pair else 0.0,
+        beta=pair.beta if pair else 0.0,
+        density_diffusion=(defaults.density_diffusion(law) if automatic else 0.0) if density is None else density,
+        stress_diffusion=(defaults.stress_diffusion(law) if automatic else 0.0) if stress is None else stress,
     )
 
 
@@ -131,13 +176,7 @@ def refusals(model: Model, path: str, places: Mapping[str, Place] | None = None)
 def _not_yet(c: ParticleControl) -> list[tuple[str, str, str]]:
     """What the control cards ask for and this solver does not do yet: field, what it is, what was said."""
     asked = [
-        (c.discretisation != 0, "discretisation", "the corrected discretisation", f"disctype {c.discretisation}"),
-        (c.kernel not in (0, 1), "kernel", "a kernel other than the cubic spline", f"kernel {c.kernel}"),
-        (c.h_option != 0, "h_option", "a smoothing length that changes", f"h_opt {c.h_option}"),
-        (c.velocity_option != 0, "velocity_option", "XSPH", f"veloc_opt {c.velocity_option}"),
-        (bool(c.planes), "planes", "boundary planes", "symmetry 1"),
-        (0.1 < c.dynamic_relaxation < 1.0, "dynamic_relaxation", "dynamic relaxation",
-         f"drelax {c.dynamic_relaxation:g}"),
+        (c.kernel not in (0, 1), "kernel", "a kernel by another number than 1", f"kernel {c.kernel}"),
         (c.friction is not None, "friction", "contact friction", f"friction {c.friction}"),
         (c.fluid_friction is not None, "fluid_friction", "fluid friction", f"friction {c.fluid_friction}"),
     ]  # fmt: skip

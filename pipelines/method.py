@@ -1,4 +1,4 @@
-"""The scene's `sph` section: what a particle run does beyond its deck. `--set sph.KEY=VALUE` gives it for a bare deck."""
+"""The scene's `sph` section: what a particle run does beyond its deck; `--set sph.KEY=VALUE` for a bare deck."""
 
 from __future__ import annotations
 

@@ -14,12 +14,13 @@ from zrno.pipelines import scene as scenes
 from zrno.pipelines.checkpoint import load_latest
 from zrno.pipelines.drafts import Draft, drafts
 from zrno.pipelines.manifest import digests
+from zrno.pipelines.method import of_options
 from zrno.pipelines.quantities import field_names
 from zrno.pipelines.scene import Scene
 from zrno.translators import read
 from zrno.translators.model import Model
 from zrno.translators.text import Fault, InputError
-from zrno.translators.yaml_marks import Place, did_you_mean
+from zrno.translators.yaml_marks import did_you_mean
 
 if TYPE_CHECKING:
     from zrno.solvers.sph import Solver
@@ -56,6 +57,9 @@ def prepare(
 
     Raises InputError for bad input, ValueError for a checkpoint that does not fit.
     """
+    from zrno.pipelines.build import particle_problem
+    from zrno.solvers.sph import Solver
+
     scene, decks = _decks(paths, chosen)
     refuse_what_is_not_run(decks)
     if directory.exists() and not directory.is_dir():
@@ -71,7 +75,11 @@ def prepare(
         if scene is None:
             places = command_options.apply(chosen.settings, model)
         digest = {str(deck): next(iter(digests([draft.path if draft else deck]).values()))}
-        solver = _solver(model, deck, places, original=chosen.run.get("compat") == "original", threads=threads)
+        method = scene.sph if scene else of_options({k: v for k, v in chosen.scene.items() if k.startswith("sph.")})
+        problem = particle_problem(
+            model, str(deck), places=places, original=chosen.run.get("compat") == "original", method=method
+        )
+        solver = Solver(problem, threads=threads)
         state = load_latest(directory, inputs=digest) if resume else None
         if state is not None:
             solver.restore(dict(state))
@@ -97,17 +105,10 @@ def _decks(paths: Sequence[Path], chosen: command_options.Options) -> tuple[Scen
     if len(paths) == 1 and paths[0].suffix.lower() in scenes.SUFFIXES:
         scene = scenes.load(paths[0], chosen.scene)
         return scene, [paths[0].parent / deck for deck in scene.decks]
-    unused = [key for key in chosen.scene if key not in chosen.settings]
+    unused = [key for key in chosen.scene if key not in chosen.settings and not key.startswith("sph.")]
     if unused:
         raise InputError([Fault("--set", 1, 1, f"{key} is for scenes", key, "a scene") for key in unused])
     return None, list(paths)
-
-
-def _solver(model: Model, deck: Path, places: Mapping[str, Place], *, original: bool, threads: int | None) -> Solver:
-    from zrno.pipelines.build import particle_problem
-    from zrno.solvers.sph import Solver
-
-    return Solver(particle_problem(model, str(deck), places=places, original=original), threads=threads)
 
 
 def _check_pictures(scene: Scene, solver: Solver) -> None:

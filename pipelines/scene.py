@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, PrivateAttr, ValidationError, ValidationInfo, field_validator
 from pydantic_core import ErrorDetails
 
+from zrno.pipelines.method import Sph
 from zrno.pipelines.sections import NotNegative, Positive, Section, wrong
 from zrno.pipelines.study_scene import Study
 from zrno.pipelines.units import SYSTEMS, Units
@@ -127,6 +128,7 @@ class Scene(Section):
     render: list[Picture] = Field(default_factory=list)
     checkpoint: Checkpoint | None = None
     study: Study | None = None
+    sph: Sph = Field(default_factory=Sph)
     _document: Marked = PrivateAttr(default_factory=lambda: Marked("scene", {}, Faults("scene")))
 
     @field_validator("decks")

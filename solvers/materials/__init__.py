@@ -33,6 +33,16 @@ Law = (
     | VonMisesMixed
 )
 
+_FAMILIES: dict[type, str] = {
+    Fluid: "fluid", Cap: "grain", KinematicCap: "grain", DruckerPrager: "grain", MohrCoulomb: "grain",
+}  # fmt: skip
+
+
+def family(law: Law) -> str:
+    """What a law is a model of, for the numerics' defaults: "solid", "grain" or "fluid"."""
+    return _FAMILIES.get(type(law), "solid")
+
+
 __all__ = [
     "PLASTIC_STRAIN",
     "Cap",
@@ -63,6 +73,7 @@ __all__ = [
     "drucker_prager",
     "drucker_prager_soil",
     "failing",
+    "family",
     "fluid",
     "hydro",
     "mohr_coulomb",

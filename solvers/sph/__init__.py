@@ -1,6 +1,7 @@
 """Smoothed particle hydrodynamics for solids."""
 
-from .problem import Body, Problem
+from .ghosts import Plane
+from .problem import Body, Cures, Problem
 from .solver import Solver
 
-__all__ = ["Body", "Problem", "Solver"]
+__all__ = ["Body", "Cures", "Plane", "Problem", "Solver"]

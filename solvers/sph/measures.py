@@ -12,9 +12,12 @@ from .problem import Problem
 from .state import Floats, State
 
 
-def particles(p: Problem, s: State, velocity: Floats) -> dict[str, Floats | NDArray[np.int64]]:
-    """The arrays of a frame, in the order of the deck. velocity: (d, n) at the time of the positions."""
-    n = s.n
+def particles(p: Problem, s: State, velocity: Floats, live: int) -> dict[str, Floats | NDArray[np.int64]]:
+    """The arrays of a frame, of the first `live` particles in the order of the deck.
+
+    velocity: (d, n) at the time of the positions.
+    """
+    n = live
     order = np.argsort(s.id[:n], kind="stable")
 
     def vectors(rows: Floats) -> Floats:

@@ -6,13 +6,13 @@ import numpy as np
 from numba.extending import overload
 
 from ..jit import kernel
-from ..materials.law import JIT_OPTIONS, rotate_state, stress_update
+from ..materials.law import JIT_OPTIONS, rotate_state, stress_update, wave_speed
 from ..materials.rotation import first_order_spin, spin_rotation
 
 
 @kernel
 def constitutive(
-    i0, i1, z, number, law, dt, correction, h_start, density_rate, stress_rate, heat, arrays, numbers
+    i0, i1, z, number, law, dt, correction, density_rate, stress_rate, heat, wave, arrays, numbers
 ):  # fmt: skip
     """Density, rotation, stress, viscosity and energy of the particles of one material in a block.
 
@@ -86,7 +86,10 @@ def constitutive(
         viscosity = 0.0
         if volumetric < 0.0:
             closing = -volumetric / dt * arrays.h[i]
-            viscosity = rho * closing * (q[0] + q[1] * closing)
+            c = numbers.wave[number]
+            if wave is not None:
+                c = wave[i]
+            viscosity = rho * closing * (q[0] * c + q[1] * closing)
         work = 0.5 * ((o_xx + n_xx) * d_xx + (o_yy + n_yy) * d_yy + (o_zz + n_zz) * d_zz)
         work += (o_xy + n_xy) * d_xy + (o_yz + n_yz) * d_yz + (o_zx + n_zx) * d_zx
         specific = 2.0 / (rho + density[i])
@@ -98,11 +101,8 @@ def constitutive(
             arrays.energy[i] += heat[i] * dt
             arrays.dissipated[i] += heat[i] * dt
         density[i] = rho
-        if h_start is not None:
-            if numbers.h_option == 1:
-                arrays.h[i] *= 1.0 + volumetric / numbers.dimension
-            if numbers.h_option == 2:
-                arrays.h[i] = h_start[i] * rho ** (-1.0 / numbers.dimension)
+        if wave is not None:
+            wave[i] = wave_speed(law, rho, arrays.energy[i], state, i)
         stress[0, i] = n_xx
         stress[1, i] = n_yy
         stress[2, i] = n_zz
@@ -154,32 +154,24 @@ def constitutive(
             s[2, i] = n_xy
 
 
-def each_law(
-    laws, number, i0, i1, z, dt, correction, h_start, density_rate, stress_rate, heat, arrays, numbers
-):  # fmt: skip
+def each_law(laws, number, i0, i1, z, dt, correction, density_rate, stress_rate, heat, wave, arrays, numbers):
     """`constitutive` for every body's law; a tuple of different types is unrolled by recursion."""
     raise NotImplementedError("called from jitted code only")
 
 
 @overload(each_law, jit_options=JIT_OPTIONS)
-def _unrolled(
-    laws, number, i0, i1, z, dt, correction, h_start, density_rate, stress_rate, heat, arrays, numbers
-):  # fmt: skip
+def _unrolled(laws, number, i0, i1, z, dt, correction, density_rate, stress_rate, heat, wave, arrays, numbers):
     if len(laws) == 0:
 
-        def none(laws, number, i0, i1, z, dt, correction, h_start, density_rate, stress_rate, heat, arrays, numbers):
+        def none(laws, number, i0, i1, z, dt, correction, density_rate, stress_rate, heat, wave, arrays, numbers):
             pass
 
         return none
 
-    def each(
-        laws, number, i0, i1, z, dt, correction, h_start, density_rate, stress_rate, heat, arrays, numbers
-    ):  # fmt: skip
-        constitutive(
-            i0, i1, z, number, laws[0], dt, correction, h_start, density_rate, stress_rate, heat, arrays, numbers
-        )
+    def each(laws, number, i0, i1, z, dt, correction, density_rate, stress_rate, heat, wave, arrays, numbers):
+        constitutive(i0, i1, z, number, laws[0], dt, correction, density_rate, stress_rate, heat, wave, arrays, numbers)
         each_law(
-            laws[1:], number + 1, i0, i1, z, dt, correction, h_start, density_rate, stress_rate, heat, arrays, numbers
+            laws[1:], number + 1, i0, i1, z, dt, correction, density_rate, stress_rate, heat, wave, arrays, numbers
         )
 
     return each
@@ -238,8 +230,8 @@ def kick(i0, i1, z, cx, bx, body_work, duration, dt, arrays, numbers):
 
 
 @kernel
-def drift(i0, i1, z, smoothed, h_list, half_support, dt, arrays):
-    """x += v dt, with the smoothed velocities where there are such.
+def drift(i0, i1, z, smoothed, h_start, h_list, half_support, dt, arrays, numbers):
+    """x += v dt, with the smoothed velocities where there are such; smoothing lengths follow the last strain.
 
     Returns the largest distance from where the list was built, with what the smoothing length has grown since, squared,
     and the index of a particle that moved further than its smoothing length or whose velocity is not a number (-1:
@@ -275,6 +267,15 @@ def drift(i0, i1, z, smoothed, h_list, half_support, dt, arrays):
             speed2 += wi * wi
             moved2 += (z[i] - arrays.z_list[i]) ** 2
         if h_list is not None:
+            if numbers.h_option == 1:
+                trace = arrays.gradient[0, i]
+                if z is not None:
+                    trace += arrays.gradient[4, i] + arrays.gradient[8, i]
+                else:
+                    trace += arrays.gradient[3, i]
+                arrays.h[i] *= 1.0 + trace * dt / numbers.dimension
+            if numbers.h_option == 2:
+                arrays.h[i] = h_start[i] * arrays.density[i] ** (-1.0 / numbers.dimension)
             grown = max(0.0, arrays.h[i] - h_list[i])
             moved2 = (np.sqrt(moved2) + half_support * grown) ** 2
         if not speed2 * dt * dt <= arrays.h[i] * arrays.h[i]:
@@ -284,7 +285,7 @@ def drift(i0, i1, z, smoothed, h_list, half_support, dt, arrays):
 
 
 @kernel
-def critical_step(i0, i1, z, numbers, arrays):
+def critical_step(i0, i1, z, wave, numbers, arrays):
     """The smallest stable step of a block by the deck's option.
 
     1 h/(c+|v|), 2 nearest distance/(c+|v|), 0 by viscosity.
@@ -294,6 +295,8 @@ def critical_step(i0, i1, z, numbers, arrays):
     least = np.inf
     for i in range(i0, i1):
         c = numbers.wave[arrays.material[i]]
+        if wave is not None:
+            c = wave[i]
         speed2 = arrays.u[i] ** 2 + arrays.v[i] ** 2
         if z is not None:
             speed2 += arrays.w[i] ** 2
@@ -306,7 +309,7 @@ def critical_step(i0, i1, z, numbers, arrays):
                 trace += arrays.gradient[3, i]
             m = arrays.material[i]
             closing = max(0.0, -trace)
-            q = viscous[m, 0] + viscous[m, 1] * length * closing
+            q = viscous[m, 0] * c + viscous[m, 1] * length * closing
             least = min(least, length / (q + np.sqrt(q * q + c * c)))
             if numbers.original:
                 continue

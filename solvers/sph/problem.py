@@ -60,7 +60,8 @@ class Problem:
     """A set of particles and how it moves.
 
     x, v: (n, 3) positions and velocities, unused components zero; mass, h, density, energy (specific): (n,); body: (n,)
-    index into `bodies`; fixed: (n, 3) directions that do not move; id: (n,) numbers of the deck. dimension 1, 2 (plane
+    index into `bodies`; stress: (n, 6) at the start, xx yy zz xy yz zx, zero
+    without; fixed: (n, 3) directions that do not move; id: (n,) numbers of the deck. dimension 1, 2 (plane
     strain) or 3. step_option: see STEP_OPTIONS; step_factor: of the critical step; first_step: 0 for automatic.
     potential: bodies repel by the contact potential; otherwise they are ordinary neighbours (kernel contact).
     body_force: acceleration (3,); body_curve: or times (k,) and accelerations (k, 3), linear between them. original: do
@@ -80,6 +81,7 @@ class Problem:
     end_time: float
     fixed: NDArray[np.bool_] | None = None
     energy: Floats | None = None
+    stress: Floats | None = None
     id: NDArray[np.int64] | None = None
     step_option: int = 2
     step_factor: float = 0.8

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ..errors import Diverged
 from ..frame import Frame
-from ..materials import PLASTIC_STRAIN, sound_speed, state_rows
+from ..materials import PLASTIC_STRAIN, constant_wave, sound_speed, state_rows
 from ..neighbours import FAR, Cells, NeighbourList
 from ..threads import available, run
 from . import across, ghosts, measures, step
@@ -60,6 +60,7 @@ class Solver:
             xsph=cures.xsph > 0.0,
             changing_h=problem.h_option != 0,
             body_work=problem.body_curve is not None,
+            wave=not all(constant_wave(b.law) for b in problem.bodies),
         )
         self._has = has
         self._state = State(n, problem.dimension, has)
@@ -100,7 +101,7 @@ class Solver:
         times, values = p.body_curve or (np.zeros(2), np.zeros((2, 3)))
         spacing = float(np.median((p.mass / p.density) ** (1.0 / p.dimension) / p.h))
         wave = np.array([sound_speed(b.law, b.density) for b in p.bodies])
-        viscous = np.array([(b.linear * c, b.quadratic, b.least, b.most) for b, c in zip(p.bodies, wave, strict=True)])
+        viscous = np.array([(b.linear, b.quadratic, b.least, b.most) for b in p.bodies])
         scale = normal / h ** (p.dimension + 2) if self._uniform_h else normal
         return Numbers(
             dimension=p.dimension,
@@ -136,12 +137,17 @@ class Solver:
             s.rows(name)[0, :n] = scalar
         if p.energy is not None:
             s.rows("energy")[0, :n] = p.energy
+        if p.stress is not None:
+            rows = s.rows("stress")
+            rows[:, :n] = p.stress.T[: len(rows)]
         s.id[:n] = np.arange(1, n + 1) if p.id is None else p.id
         s.material[:n] = p.body
         if p.fixed is not None:
             s.fixed[:n] = p.fixed @ np.array([1, 2, 4])
         if self._has.changing_h:
             s.rows("h_start")[0, :n] = p.h * p.density ** (1.0 / p.dimension)
+        if self._has.wave:
+            s.rows("wave")[0, :n] = self._numbers.wave[p.body]
         if self._has.correction:  # none yet: the stress-free start needs none
             s.rows("correction")[: 3 if p.dimension == 3 else 2] = 1.0
         radius = self._shape.support * float(p.h.max())
@@ -261,6 +267,7 @@ class Solver:
                 a.smoothed if has.xsph else None,
                 cures.xsph,
                 a.body_work,
+                a.wave,
                 None if images is None else images.source,
                 None if images is None else images.sign,
                 None if images is None else images.shift,
@@ -306,6 +313,7 @@ class Solver:
             stress_rate=s.rows("stress_rate"),
             smoothed=s.rows("smoothed"),
             body_work=s.row("body_work"),
+            wave=s.row("wave"),
             stress=s.rows("stress"),
             gradient=s.rows("gradient"),
             s=s.rows("s"),
@@ -458,7 +466,7 @@ class Solver:
 
     def frame(self) -> Frame:
         """The state now, in the order of the deck."""
-        arrays = measures.particles(self.problem, self._state, self._velocity())
+        arrays = measures.particles(self.problem, self._state, self._velocity()[:, : self.live], self.live)
         return Frame(time=self.time, step=self.step, particles=arrays)
 
     def _energies(self) -> dict[str, float]:

@@ -24,8 +24,8 @@ class Arrays(NamedTuple):
     history; h_start: h0 rho0^(1/d), h_list: h where the list was built; correction: inverse shape matrix; bx..:
     acceleration by artificial stress, artificial_work: its work on a particle; heat: power per mass of pair viscosity;
     density_rate, stress_rate: of diffusion; smoothed: velocities of XSPH; body_work: of a body force that changes;
-    id, material, fixed (bits x y z): integers; first, count, rows: the neighbour list; c_first, c_count, c_rows: the
-    list of other bodies; reduced: (threads, .) what each thread found.
+    wave: speed now, where a law's changes; id, material, fixed (bits x y z): integers; first, count, rows: the
+    neighbour list; c_first, c_count, c_rows: the list of other bodies; reduced: (threads, .) what each thread found.
     """
 
     x: Any
@@ -59,6 +59,7 @@ class Arrays(NamedTuple):
     stress_rate: Any
     smoothed: Any
     body_work: Any
+    wave: Any
     stress: Any
     gradient: Any
     s: Any
@@ -87,7 +88,7 @@ class Numbers(NamedTuple):
     """The constants of a run.
 
     mixed: bodies of different density are neighbours. scale, force_scale: see `pairs`, the latter times the mass where
-    all are equal; normal: a_d. viscous: (bodies, 4) linear coefficient times c, quadratic, density limits; wave:
+    all are equal; normal: a_d. viscous: (bodies, 4) linear and quadratic coefficient, density limits; wave:
     (bodies,) speeds; strength, exponent: (bodies,) of the contact. body: (3,) acceleration now, by the table
     body_times (k,), body_values (k, 3). h_option: as the deck's. relaxation: factor of the velocities in each step.
     pair_viscosity: (bodies, 2) alpha and beta; density_diffusion, stress_diffusion: (bodies,)
@@ -134,7 +135,7 @@ class Rows:
     """Which optional rows a run has.
 
     state: of the laws; the others say whether: contact, correction, artificial stress, pair viscosity (heat), density
-    and stress diffusion, xsph, a changing h, a changing body force.
+    and stress diffusion, xsph, a changing h, a changing body force, a changing wave speed.
     """
 
     state: int = 0
@@ -147,6 +148,7 @@ class Rows:
     xsph: bool = False
     changing_h: bool = False
     body_work: bool = False
+    wave: bool = False
 
 
 class State:
@@ -166,6 +168,7 @@ class State:
             "density": 1, "volume": 1, "mass": 1, "h": 1, "energy": 1, "dissipated": 1, "viscosity": 1,
             "contact_work": int(has.contact), "artificial_work": int(has.artificial), "heat": int(has.heat),
             "h_start": int(has.changing_h), "h_list": int(has.changing_h), "body_work": int(has.body_work),
+            "wave": int(has.wave),
             "b": d if has.artificial else 0, "state": has.state,
             "gradient": d * d, "s": (d * d if has.correction else 6 if solid else 3), "nearest": 1,
             "c": d if has.contact else 0, "correction": (6 if solid else 3) if has.correction else 0,

@@ -29,6 +29,7 @@ CHUNK = 256  # particles that a thread takes on at a time
 
 LANDING = 8  # so many steps before a wanted time the step is trimmed to meet it
 GROWTH = 1.1  # a step grows by no more than this
+INSTANT = 1e-300  # a duration that divides no strain rate by zero
 COLLAPSE = 1e-7  # a step this small beside the first one will not recover
 
 
@@ -54,7 +55,7 @@ def strain(i0, i1, shape, solid, h, line, correction, density_rate, stress_rate,
 
 @kernel
 def force(i0, i1, shape, z, h, mass, nearest, line, cx, potential, mixed, correction, bx, artificial, heat, body_work,
-          dt, arrays, numbers):  # fmt: skip
+          wave, dt, arrays, numbers):  # fmt: skip
     """Accelerations of a range of particles; returns their critical step."""
     if mixed is not None:
         weight = arrays.volume
@@ -78,7 +79,7 @@ def force(i0, i1, shape, z, h, mass, nearest, line, cx, potential, mixed, correc
             numbers.original, arrays.ax, arrays.ay, arrays.az, cx, arrays.cy, arrays.cz,
         )  # fmt: skip
     half_work(i0, i1, z, cx, bx, body_work, dt, arrays, numbers)
-    return critical_step(i0, i1, z, numbers, arrays)
+    return critical_step(i0, i1, z, wave, numbers, arrays)
 
 
 @kernel
@@ -95,8 +96,8 @@ def body_force_at(time, numbers):
 @kernel
 def advance(
     thread, threads, sync, n, offset, shape, solid, z, h, mass, nearest, line, cx, potential, mixed, correction, bx,
-    artificial, h_list, h_start, density_rate, stress_rate, heat, smoothed, smoothing, body_work, image_source,
-    image_sign, image_shift, arrays, numbers, laws, progress, until, pause, steps, reach2,
+    artificial, h_list, h_start, density_rate, stress_rate, heat, smoothed, smoothing, body_work, wave,
+    image_source, image_sign, image_shift, arrays, numbers, laws, progress, until, pause, steps, reach2,
 ):  # fmt: skip
     """Take up to `steps` steps towards `until`, each thread for its own range; returns why it stopped.
 
@@ -132,15 +133,18 @@ def advance(
                     c = claim(sync, taken)
                 taken += chunks + threads
                 barrier(sync, threads)  # the strain of all particles needs the old volumes
-                each_law(
-                    laws, 0, i0, i1, z, last, correction, h_start, density_rate, stress_rate, heat, arrays, numbers
-                )
-                for i in range(i0, i1):
-                    arrays.volume[i] = arrays.mass[i] / arrays.density[i]
+            # at the very start without strain: what an equation of state makes of the first densities
+            each_law(
+                laws, 0, i0, i1, z, max(last, INSTANT), correction, density_rate, stress_rate, heat, wave, arrays,
+                numbers,
+            )  # fmt: skip
+            for i in range(i0, i1):
+                arrays.volume[i] = arrays.mass[i] / arrays.density[i]
+            barrier(sync, threads)
+            if image_source is not None:
+                g0, g1 = share(len(image_source), thread, threads)
+                ghosts.follow_stress(g0, g1, offset, z, correction, image_source, image_sign, arrays)
                 barrier(sync, threads)
-                if image_source is not None:
-                    ghosts.follow_stress(g0, g1, offset, z, correction, image_source, image_sign, arrays)
-                    barrier(sync, threads)
             if body_work is not None and thread == 0:
                 body_force_at(time, numbers)
             if body_work is not None:
@@ -150,7 +154,7 @@ def advance(
             while c < chunks:
                 part = force(
                     c * chunk, min(n, (c + 1) * chunk), shape, z, h, mass, nearest, line, cx, potential, mixed,
-                    correction, bx, artificial, heat, body_work, last, arrays, numbers,
+                    correction, bx, artificial, heat, body_work, wave, last, arrays, numbers,
                 )  # fmt: skip
                 least = min(least, part)
                 c = claim(sync, taken)
@@ -194,7 +198,7 @@ def advance(
                 c = claim(sync, taken)
             taken += chunks + threads
             barrier(sync, threads)
-        moved, bad = drift(i0, i1, z, smoothed, h_list, 0.5 * shape.support, now, arrays)
+        moved, bad = drift(i0, i1, z, smoothed, h_start, h_list, 0.5 * shape.support, now, arrays, numbers)
         arrays.reduced[thread, 0] = moved
         arrays.reduced[thread, 1] = bad
         barrier(sync, threads)

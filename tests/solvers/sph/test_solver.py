@@ -8,50 +8,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from sph_scenes import ELASTIC, finished, impact, lattice
 
 from zrno.solvers.errors import Diverged
 from zrno.solvers.materials import Elastic, sound_speed, von_mises
 from zrno.solvers.sph import Body, Problem, Solver
 from zrno.solvers.sph.smoothing import Cubic, normaliser, slope_at
 
-ELASTIC = Elastic.from_engineering(1.0, 0.3)
 PLASTIC = von_mises(1.0, 0.3, 0.005, 0.1, 0.5)
-
-
-def lattice(shape: tuple[int, ...], at: tuple[float, ...], spacing: float = 0.1) -> np.ndarray:
-    axes = [a + spacing * (np.arange(n) + 0.5) for n, a in zip(shape, at, strict=True)]
-    x = np.zeros((math.prod(shape), 3))
-    x[:, : len(shape)] = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(shape))
-    return x
-
-
-def impact(dimension: int, n: int = 6, law: Any = ELASTIC, speed: float = 0.01, **changes: Any) -> Problem:
-    """Two blocks that touch and run into each other along x."""
-    shape = (n, n, n)[:dimension]
-    zeros = (0.0,) * (dimension - 1)
-    x = np.concatenate([lattice(shape, (-0.1 * n, *zeros)), lattice(shape, (0.0, *zeros))])
-    half = len(x) // 2
-    v = np.zeros_like(x)
-    v[:half, 0], v[half:, 0] = speed, -speed
-    options: dict[str, Any] = {
-        "dimension": dimension,
-        "x": x,
-        "v": v,
-        "mass": np.full(len(x), 0.1**dimension),
-        "h": np.full(len(x), 0.12),
-        "density": np.ones(len(x)),
-        "body": np.repeat([0, 1], half),
-        "bodies": (Body(1, "a", law, 1.0), Body(2, "b", law, 1.0)),
-        "end_time": 1.0,
-    }
-    return Problem(**options | changes)
-
-
-def finished(problem: Problem, until: float = 1.0, **options: Any) -> Solver:
-    solver = Solver(problem, **options)
-    solver.advance(until, 10**6)
-    assert solver.time == until
-    return solver
 
 
 @pytest.mark.parametrize("dimension", [1, 2, 3])

@@ -1,0 +1,131 @@
+"""Boundary planes, body forces in time, smoothing lengths that change, dynamic relaxation."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+from sph_scenes import finished, impact, jittered, lattice, one_body, periodic
+
+from zrno.solvers.errors import Diverged
+from zrno.solvers.materials import Elastic
+from zrno.solvers.sph import Cures, Plane, Problem, Solver
+from zrno.solvers.sph.ghosts import LIMIT, PERIODIC, SYMMETRY
+
+_SOFT = Elastic.from_engineering(1e-3, 0.3)
+
+
+@pytest.mark.parametrize("dimension", [1, 2, 3])
+@pytest.mark.parametrize("cures", [Cures(), Cures(correction=True)])
+def test_half_a_model_behind_a_symmetry_plane_is_the_whole_one(dimension: int, cures: Cures) -> None:
+    whole = impact(dimension, cures=cures)
+    one = dataclasses.replace(whole, body=np.zeros_like(whole.body), bodies=whole.bodies[:1])
+    right = whole.x[:, 0] > 0.0
+    half = dataclasses.replace(
+        one, x=one.x[right], v=one.v[right], mass=one.mass[right], h=one.h[right], density=one.density[right],
+        body=one.body[right], planes=(Plane(0, -1, SYMMETRY, 0.0),),
+    )  # fmt: skip
+    a, b = finished(one, 2.0).frame().particles, finished(half, 2.0).frame().particles
+    assert np.allclose(a["position"][right], b["position"], atol=1e-12)
+    assert np.allclose(a["stress"][right], b["stress"], atol=1e-12)
+
+
+def test_a_corner_of_symmetry_planes_is_a_quarter_of_a_body() -> None:
+    x = lattice((8, 8), (-0.4, -0.4))
+    v = -0.02 * x
+    quarter = (x[:, 0] > 0.0) & (x[:, 1] > 0.0)
+    planes = (Plane(0, -1, SYMMETRY, 0.0), Plane(1, -1, SYMMETRY, 0.0))
+    a = finished(one_body(x, v), 3.0).frame().particles
+    b = finished(one_body(x[quarter], v[quarter], planes=planes), 3.0).frame().particles
+    assert np.allclose(a["position"][quarter], b["position"], atol=1e-12)
+    assert np.allclose(a["stress"][quarter], b["stress"], atol=1e-12)
+
+
+def test_a_periodic_body_does_not_care_where_the_box_begins() -> None:
+    x = jittered((10, 10), 0.1)
+    v = np.zeros_like(x)
+    v[:, 0] = 0.05 + 0.01 * np.sin(2.0 * np.pi * x[:, 1])
+    moved = x.copy()
+    moved[:, :2] = (moved[:, :2] + [0.33, 0.71]) % 1.0
+    a, b = (finished(one_body(y, v, planes=periodic(1.0, 1.0)), 8.0) for y in (x, moved))
+    assert a.builds > 1
+    p, q = a.frame().particles, b.frame().particles
+    shift = q["position"] - p["position"] - [0.33, 0.71, 0.0]
+    assert np.allclose(shift - np.round(shift), 0.0, atol=1e-9)
+    assert np.allclose(p["stress"], q["stress"], atol=1e-9)
+    assert np.allclose(p["displacement"], q["displacement"], atol=1e-9)
+
+
+def test_a_periodic_plane_needs_its_opposite() -> None:
+    with pytest.raises(ValueError, match="a periodic plane across x needs its opposite"):
+        one_body(lattice((4, 4), (0.0, 0.0)), planes=(Plane(0, -1, PERIODIC, 0.0),))
+
+
+def test_particles_beyond_a_limit_plane_leave_the_problem() -> None:
+    x = lattice((4, 4), (0.0, 0.0))
+    v = np.zeros_like(x)
+    v[x[:, 0] > 0.2, 0] = 0.5
+    x[x[:, 0] > 0.2, 0] += 1.0
+    solver = finished(one_body(x, v, planes=(Plane(0, 1, LIMIT, 2.0),)), 4.0)
+    assert solver.live == 8
+    assert solver.history()["active"] == 8.0
+    assert len(solver.frame().particles["id"]) == 8
+    assert solver.energy_report()["balance_error"] < 1e-12
+    v[:, 0] += 0.5
+    with pytest.raises(Diverged, match="all particles have left"):
+        finished(one_body(x, v, planes=(Plane(0, 1, LIMIT, 2.0),)), 40.0)
+
+
+def falling(**options: object) -> Solver:
+    return finished(one_body(lattice((4, 4), (0.0, 0.0)), **options), 2.0)  # type: ignore[arg-type]
+
+
+def test_a_body_force_by_curve() -> None:
+    """Constant it is that of the deck; a ramp gives the speed and the work that its integral says."""
+    table = (np.array([0.0, 2.0]), np.array([[0.0, -0.02, 0.0]] * 2))
+    deck, curve = falling(body_force=(0.0, -0.02, 0.0)), falling(body_curve=table)
+    assert np.array_equal(deck.frame().particles["position"], curve.frame().particles["position"])
+    assert curve.energy_report()["external_work"] == pytest.approx(deck.energy_report()["external_work"], rel=1e-12)
+    ramp = falling(body_curve=(np.array([0.0, 1.0]), np.array([[0.0, 0.0, 0.0], [0.04, 0.0, 0.0]])), step_factor=0.1)
+    assert ramp.frame().particles["velocity"][:, 0] == pytest.approx(0.02 + 0.04, rel=2e-3)
+    assert ramp.energy_report()["balance_error"] < 1e-3
+
+
+def squeezed(option: int) -> tuple[np.ndarray, np.ndarray]:
+    x = lattice((8, 8), (-0.4, -0.4))
+    v = -0.3 * x
+    solver = finished(one_body(x, v, h_option=option, step_factor=0.2), 0.5)
+    return np.array(solver._state.rows("h")[0, : solver.n]), np.array(solver._state.rows("density")[0, : solver.n])
+
+
+def test_smoothing_lengths_follow_the_density() -> None:
+    h, _ = squeezed(0)
+    assert np.all(h == 0.12)
+    h, rho = squeezed(2)
+    assert rho.max() > 1.08
+    assert np.allclose(h, 0.12 * rho**-0.5, rtol=4e-3)  # one step behind
+    h, rho = squeezed(1)
+    assert np.allclose(h, 0.12 * rho**-0.5, rtol=4e-3)
+
+
+def test_a_body_that_grows_threefold_keeps_its_neighbours() -> None:
+    """The list follows h: a run with a list in every step gives the same result."""
+
+    def grown(skin: float) -> dict[str, np.ndarray]:
+        x = lattice((6, 6), (-0.3, -0.3))
+        problem: Problem = one_body(x, 1.0 * x, h_option=2, body={"least": 1e-3}, law=_SOFT, step_factor=0.3)
+        solver = finished(problem, 1.0, skin=skin)
+        return solver.frame().particles
+
+    a, b = grown(0.25), grown(1e-6)
+    assert a["density"].min() < 0.4
+    assert np.allclose(a["position"], b["position"], atol=1e-10)
+
+
+def test_dynamic_relaxation_takes_motion_out() -> None:
+    x = lattice((6, 6), (-0.3, -0.3))
+    free, relaxed = (
+        finished(one_body(x, -0.02 * x, relaxation=r), 20.0).energy_report()["kinetic"] for r in (1.0, 0.95)
+    )
+    assert relaxed < 1e-5 * free
