@@ -62,8 +62,9 @@ def test_the_deck_is_computed_as_it_is(tmp_path: Path) -> None:
         ([("   60\n\n", "   60\n       0.3       0.2\n")], "9:8", "contact friction", "friction (0.3, 0.2)"),
         ([("   60\n\n", "   60\n    0    1    0\n       0.3       0.2\n")], "9:10", "contact friction", "friction ("),
         ([("   60\n\n", "   60\n    0    2    0\n       0.4\n")], "9:10", "fluid friction", "friction 0.4"),
-        ([("       0.5\n       0.0", "       0.5\n       1.0      0.25")],
-         "10:1", "material 1: failure by plastic strain", "expected a deck without it"),
+        ([("    1    3       2.7    0", "    1    9       2.7   28"),
+          ("       0.5\n       0.0", "       0.5\n       0.0\nwater\n      1e-3       7.0       0.0       0.5")],
+         "10:1", "material 1: an initial relative volume V0 of 0.5", "expected a deck without it"),
     ],
 )  # fmt: skip
 def test_what_is_not_computed_stands_where_the_deck_asks(
