@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from zrno.pipelines.laws import initial_energy, law_of
 from zrno.pipelines.method import Sph
 from zrno.solvers.errors import Unsupported
-from zrno.solvers.materials import Elastic, Law, von_mises
+from zrno.solvers.materials import Law
 from zrno.solvers.sph import Body, Cures, Plane, Problem, defaults
-from zrno.translators.model import Material, Model, ParticleControl
+from zrno.translators.model import Eos, Material, Model, ParticleControl
 from zrno.translators.text import Fault, InputError
 from zrno.translators.yaml_marks import Place
 
@@ -49,7 +50,7 @@ def particle_problem(
     numbers = sorted(model.materials)
     chosen = Sph(cures="none") if original else method or Sph()
     bodies = [
-        _body(model.materials[number], control.contact_laws[k] if control.contact else (0.0, 0.0), chosen)
+        _body(model, model.materials[number], control.contact_laws[k] if control.contact else (0.0, 0.0), chosen)
         for k, number in enumerate(numbers)
     ]
     n = len(particles)
@@ -60,6 +61,7 @@ def particle_problem(
     def of_material(values: list[float]) -> Any:
         return np.array(values, dtype=float)[body]
 
+    energies = [initial_energy(_eos(model, m), m.density) for m in per_material]
     masses = [m.mass / max(1, count) for m, count in zip(per_material, owned, strict=True)]
     return Problem(
         title=model.title,
@@ -69,7 +71,7 @@ def particle_problem(
         mass=of_material(masses) if particles.mass is None else particles.mass,
         h=of_material([m.h for m in per_material]) if particles.h is None else particles.h,
         density=of_material([m.density for m in per_material]) if particles.rho is None else particles.rho,
-        energy=particles.e,
+        energy=of_material(energies) if particles.e is None and any(energies) else particles.e,
         body=body,
         bodies=tuple(bodies),
         fixed=_FIXED[particles.bc],
@@ -111,11 +113,11 @@ def _cures(control: ParticleControl, method: Sph, laws: list[Law]) -> Cures:
     )
 
 
-def _body(material: Material, contact: tuple[float, float], method: Sph) -> Body:
+def _body(model: Model, material: Material, contact: tuple[float, float], method: Sph) -> Body:
     def given(value: float | None, default: float) -> float:
         return value if value else default
 
-    law = _law(material)
+    law = _law(model, material)
     automatic = method.cures == "auto"
     density, stress, pair = method.density_diffusion, method.stress_diffusion, method.pair_viscosity
     return Body(
@@ -136,16 +138,12 @@ def _body(material: Material, contact: tuple[float, float], method: Sph) -> Body
     )
 
 
-def _law(material: Material) -> Law:
-    p = material.parameters
-    match material.law:
-        case "elastic":
-            return Elastic.from_engineering(p["E"], p["nu"])
-        case "von_mises":
-            if "failure_strain" in p:
-                raise Unsupported("failure by plastic strain is not computed yet")
-            return von_mises(p["E"], p["nu"], p["yield_stress"], p.get("tangent_modulus", 0.0), p.get("beta", 0.0))
-    raise Unsupported(f"the law {material.law} is not computed yet; elastic and von_mises are")
+def _law(model: Model, material: Material) -> Law:
+    return law_of(material, _eos(model, material), model.curves)
+
+
+def _eos(model: Model, material: Material) -> Eos | None:
+    return None if material.eos is None else model.equations_of_state.get(material.eos)
 
 
 def refusals(model: Model, path: str, places: Mapping[str, Place] | None = None) -> tuple[list[Fault], list[Fault]]:
@@ -165,7 +163,7 @@ def refusals(model: Model, path: str, places: Mapping[str, Place] | None = None)
     for number, material in sorted(model.materials.items()):
         at = where.get(f"material {number}", Place(path, material.source.line if material.source else 1, 1))
         try:
-            _law(material)
+            _law(model, material)
         except Unsupported as error:
             missing.append(Fault(at.path, at.line, at.column, f"material {number}: {error}", "", "a deck without it"))
         except ValueError as error:

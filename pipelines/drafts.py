@@ -55,8 +55,7 @@ class Draft:
                 if self.settings.gives("materials", material.name)
                 else material.name.removeprefix("part ")
             )
-            # of all that settings can say of a material this alone is not computed
-            materials[f"material {number}"] = self.settings.place("materials", name, "failure_strain", value=True)
+            materials[f"material {number}"] = self.settings.place("materials", name, "law", value=True)
         return materials | control_places(self.settings)
 
 

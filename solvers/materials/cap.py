@@ -11,8 +11,9 @@ I = -(s_xx + s_yy + s_zz), J = sqrt(J2); names in brackets are LS-DYNA's.
 - tension   I >= T: beyond it the stress becomes the pressure T/3, without shear; the cap stays. T is not below the
   envelope's apex Fe(I) = 0
 - flow is associated on each surface, and between the two normals where they meet
-- kinematic (`KinematicCap`): the surfaces are those of s - a, da = C F dep', F = 1 - (s - a):a/(2 N Fe) >= 0, so that
-  a stays within N of J. The limit surface is the envelope moved out by N: give k less N to keep the envelope there.
+- kinematic (`KinematicCap`): the surfaces are those of s - a, da = C F dep', F = 1 - (s - a):a/(2 N Fe) >= 0: a moves
+  along the flow until it has N of J there. The limit surface is the envelope moved out by N: to keep it on the
+  envelope, give k less N
 
 The return to the surfaces is in `cap_return`. The state's second row is L less its start.
 """
@@ -90,7 +91,8 @@ def cap(
     if hardening.decay * (hardening.first - least) > 100.0:
         raise ValueError(f"D {hardening.decay!r} and X0 {hardening.first!r} do not belong together: in one unit?")
     law = law._replace(tension=max(tension, _apex(law)), start=_start(law))
-    _check_hardening(law, least)
+    if isinstance(hardening, CapHardeningGeneral):
+        _check_hardening(law, least)
     return KinematicCap(law, rate, size) if rate > 0.0 else law
 
 
@@ -184,7 +186,7 @@ def _kinematic(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, 
         along = 0.0
         if root > 0.0:
             along = (a_xx * x_xx + a_yy * x_yy + a_zz * x_zz + 2.0 * (a_xy * x_xy + a_yz * x_yz + a_zx * x_zx)) / root
-        # F at the end of the increment, by the flow that the overshoot would take: a cannot pass N in any step
+        # F at the end of the increment, by the flow that the overshoot would take; along it a cannot pass N
         over = max(0.0, root - envelope(law.cap, max(first, law.cap.tension))[0])
         share = max(0.0, 1.0 - along / (2.0 * law.size)) / (1.0 + 0.5 * law.rate * over / (law.cap.shear * law.size))
         shear = law.cap.shear + 0.5 * law.rate * share
@@ -193,6 +195,8 @@ def _kinematic(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, 
         mean = -first / 3.0
         scale = new / root if root > 0.0 else 0.0
         back = 0.5 * law.rate * share * (1.0 - scale) / shear
+        if root > 0.0:
+            back = min(back, max(0.0, law.size - 0.5 * along) / root)
         a_xx = 0.0 if cut else a_xx + back * x_xx
         a_yy = 0.0 if cut else a_yy + back * x_yy
         a_zz = 0.0 if cut else a_zz + back * x_zz

@@ -159,12 +159,14 @@ def _monaghan(eos, rho):
 
 @kernel
 def implicit_pressure(eos, rho, e, volumetric, before, work):
-    """p at the end of an increment of volume whose own mean pressure times volume, less `work`, is taken from e.
+    """p at the end of an increment of volume whose own work, by the mean pressure, is taken from e.
 
-    before: p at its start; work: of the deviator per volume. The caller's e grows by the same sum.
+    before: p at its start; work: of the deviator per volume. The caller is to let e grow by the same sum, over the mean
+    of the densities before and after, rho the one after and the ratio of the two (1 - tr/2)/(1 + tr/2): rho (1 - tr) is
+    of the first order, and a vibration then heats.
     """
     a, _, b, _ = coefficients(eos, rho)
-    specific = 2.0 * (1.0 - volumetric) / ((2.0 - volumetric) * rho)  # 1 over the mean density
+    specific = (1.0 - 0.5 * volumetric) / rho  # 1 over the mean density
     # an increment that more than halves the volume has no such answer; it gets a finite one
     room = max(0.5, 1.0 + 0.5 * b * specific * volumetric)
     return (a + b * (e + specific * (work - 0.5 * before * volumetric))) / room

@@ -33,14 +33,15 @@ class Path(NamedTuple):
 
 @kernel
 def _drive(law, strain, spin, dt, stress, state, bulk, stresses, states, dissipated, densities, energies):
-    """bulk: density and energy. The energy grows by the mean of old and new stress, as in the solvers."""
+    """bulk: density and energy. The energy grows by the mean of old and new stress over the mean density."""
     xx, yy, zz, xy, yz, zx = stress[0], stress[1], stress[2], stress[3], stress[4], stress[5]
     rho, energy = bulk[0], bulk[1]
     for k in range(len(strain)):
         e = strain[k]
         w = spin[k]
         old = rho
-        rho *= 1.0 - (e[0] + e[1] + e[2])
+        half = 0.5 * (e[0] + e[1] + e[2])
+        rho *= (1.0 - half) / (1.0 + half)  # exp(-tr e) to the third order
         work = xx * e[0] + yy * e[1] + zz * e[2] + 2.0 * (xy * e[3] + yz * e[4] + zx * e[5])
         xx, yy, zz, xy, yz, zx = spin_rotation(w[0], w[1], w[2], xx, yy, zz, xy, yz, zx)
         rotate_state(law, w[0], w[1], w[2], state, 0)

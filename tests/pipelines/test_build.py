@@ -8,6 +8,9 @@ import pytest
 
 from zrno.pipelines import options
 from zrno.pipelines.build import particle_problem, refusals
+from zrno.pipelines.method import Sph, of_options
+from zrno.solvers.sph import Cures, Plane
+from zrno.solvers.sph.ghosts import SYMMETRY
 from zrno.translators import InputError, Model, read
 
 DECK = """\
@@ -54,16 +57,12 @@ def test_the_deck_is_computed_as_it_is(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "place", "what", "said"),
     [
-        ([("    2    0         1", "    2    1         1")], "3:10", "the corrected discretisation", "disctype 1"),
-        ([("0.8       0.0       0.0", "0.8       0.0       0.5")], "4:38", "dynamic relaxation", "drelax 0.5"),
-        ([("    0    2    0    0", "    0    2    1    0")], "7:15", "XSPH", "veloc_opt 1"),
-        ([("    0    2    0    0", "    0    2    0    1"), ("", PLANES)], "7:20", "boundary planes", "symmetry 1"),
-        ([("    0    1   60", "    2    1   60")], "8:5", "a smoothing length that changes", "h_opt 2"),
         ([("   60\n\n", "   60\n       0.3       0.2\n")], "9:8", "contact friction", "friction (0.3, 0.2)"),
         ([("   60\n\n", "   60\n    0    1    0\n       0.3       0.2\n")], "9:10", "contact friction", "friction ("),
         ([("   60\n\n", "   60\n    0    2    0\n       0.4\n")], "9:10", "fluid friction", "friction 0.4"),
-        ([("       0.5\n       0.0", "       0.5\n       1.0      0.25")],
-         "10:1", "material 1: failure by plastic strain", "expected a deck without it"),
+        ([("    1    3       2.7    0", "    1    9       2.7   28"),
+          ("       0.5\n       0.0", "       0.5\n       0.0\nwater\n      1e-3       7.0       0.0       0.5")],
+         "10:1", "material 1: an initial relative volume V0 of 0.5", "expected a deck without it"),
     ],
 )  # fmt: skip
 def test_what_is_not_computed_stands_where_the_deck_asks(
@@ -92,20 +91,58 @@ def test_constants_that_no_law_can_have_are_wrong(tmp_path: Path, change: tuple[
     assert str(fault).startswith(f"deck.mcm:10:1: error: material 1: {said}"), fault
 
 
-def test_an_option_that_asks_is_the_place(tmp_path: Path) -> None:
-    model = _read(tmp_path, ("    0    1   60", "    2    1   60"))
-    places = options.apply({"xsph": True, "h_option": 1}, model)
-    _, missing = refusals(model, "deck.mcm", places)
-    assert [str(fault).partition(" is not")[0] for fault in missing] == [
-        "--set:1:10: error: a smoothing length that changes",
-        "--set:1:6: error: XSPH",
-    ]
+def test_what_the_control_cards_ask_for_reaches_the_solver(tmp_path: Path) -> None:
+    model = _read(
+        tmp_path,
+        ("    2    0         1", "    2    1         1"),
+        ("0.8       0.0       0.0", "0.8       0.0       0.5"),
+        ("    0    2    0    0", "    0    2    1    1"),
+        ("    0    1   60", "    2    1   60"),
+        ("", PLANES),
+    )
+    problem = particle_problem(model, "deck.mcm")
+    assert problem.cures == Cures(correction=True, artificial_stress=0.3, xsph=0.1)
+    assert (problem.relaxation, problem.h_option) == (0.5, 2)
+    assert problem.planes == (Plane(0, -1, SYMMETRY, 0.0),)
+    options.apply({"xsph": False, "h_option": 1}, model)
+    problem = particle_problem(model, "deck.mcm")
+    assert (problem.cures.xsph, problem.h_option) == (0.0, 1)
+
+
+def test_the_method_beyond_the_deck_is_by_material_or_as_it_is_said(tmp_path: Path) -> None:
+    model = _read(tmp_path)
+    assert particle_problem(model, "deck.mcm").cures == Cures(artificial_stress=0.3)
+    assert particle_problem(model, "deck.mcm", original=True).cures == Cures()
+    assert particle_problem(model, "deck.mcm", method=Sph(cures="none")).cures == Cures()
+    said = of_options({
+        "sph.kernel": "wendland_c2", "sph.artificial_stress": 0.1, "sph.stress_diffusion": 0.2,
+        "sph.pair_viscosity.alpha": 0.4, "sph.acceleration": [[0, 0, 0, 0], [1, 0, -9.81, 0]],
+    })  # fmt: skip
+    problem = particle_problem(model, "deck.mcm", method=said)
+    assert (problem.kernel, problem.cures.artificial_stress) == ("wendland_c2", 0.1)
+    assert (problem.bodies[0].alpha, problem.bodies[0].stress_diffusion) == (0.4, 0.2)
+    assert problem.body_curve is not None
+    assert problem.body_curve[1][1].tolist() == [0.0, -9.81, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "message"),
+    [
+        ("sph.kernle", "cubic", r"unknown key sph.kernle"),
+        ("sph.kernel", "cubc", r"sph.kernel has a wrong value \(cubc\); expected 'cubic', 'quintic'"),
+        ("sph.artificial_stress", 2, "sph.artificial_stress has a wrong value"),
+        ("sph.pair_viscosity.gamma", 2, "unknown key sph.pair_viscosity.gamma"),
+    ],
+)
+def test_a_method_that_there_is_not_is_bad_input(key: str, value: object, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        of_options({key: value})
 
 
 def test_all_refusals_are_said_and_a_mesh_is_no_deck(tmp_path: Path) -> None:
-    model = _read(tmp_path, ("    0    2    0    0", "    0    2    1    0"), ("      0.33", "      0.55"))
+    model = _read(tmp_path, ("   60\n\n", "   60\n    0    2    0\n       0.4\n"), ("      0.33", "      0.55"))
     with pytest.raises(InputError) as caught:
         particle_problem(model, "deck.mcm")
-    assert [(fault.line, fault.column) for fault in caught.value.faults] == [(7, 15), (10, 1)]
+    assert [(fault.line, fault.column) for fault in caught.value.faults] == [(9, 10), (11, 1)]
     with pytest.raises(InputError, match=r"plate\.msh:1:1: error: not a particle deck \(msh\)"):
         particle_problem(Model(format="msh"), "plate.msh")

