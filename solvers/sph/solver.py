@@ -60,7 +60,7 @@ class Solver:
             xsph=cures.xsph > 0.0,
             changing_h=problem.h_option != 0,
             body_work=problem.body_curve is not None,
-            wave=not all(constant_wave(b.law) for b in problem.bodies),
+            wave=not (problem.original or all(constant_wave(b.law) for b in problem.bodies)),
         )
         self._has = has
         self._state = State(n, problem.dimension, has)
