@@ -87,6 +87,8 @@ def particle_problem(
         h_option=control.h_option,
         relaxation=control.dynamic_relaxation if 0.1 < control.dynamic_relaxation < 1.0 else 1.0,
         planes=_planes(control),
+        traced=tuple(control.history_particles),
+        transducers=_transducers(control, numbers),
         cures=_cures(control, chosen, [body.law for body in bodies]),
     )
 
@@ -102,6 +104,15 @@ def _planes(control: ParticleControl) -> tuple[Plane, ...]:
     """The deck's planes xmin, xmax, ymin, ..., as far as its dimension goes."""
     given = enumerate((control.planes or [])[: 2 * control.dimension])
     return tuple(Plane(k // 2, 1 if k % 2 else -1, kind, position) for k, (kind, position) in given if kind)
+
+
+def _transducers(control: ParticleControl, numbers: list[int]) -> tuple[tuple[float, float, float, int], ...]:
+    """Places with all three coordinates, and the index of the material that each listens to."""
+    found = []
+    for *place, material in control.transducers:
+        x, y, z = (*place, 0.0, 0.0)[:3]
+        found.append((x, y, z, numbers.index(int(material))))
+    return tuple(found)
 
 
 def _cures(control: ParticleControl, method: Sph, laws: list[Law]) -> Cures:
@@ -160,6 +171,7 @@ def refusals(model: Model, path: str, places: Mapping[str, Place] | None = None)
     for field, message, said in _not_yet(model.particle_control):
         at = where.get(field, Place(path, 1, 1))
         missing.append(Fault(at.path, at.line, at.column, f"{message} is not computed yet", said, "a deck without it"))
+    wrong += _probes_of_nothing(model, path)
     for number, material in sorted(model.materials.items()):
         at = where.get(f"material {number}", Place(path, material.source.line if material.source else 1, 1))
         try:
@@ -169,6 +181,21 @@ def refusals(model: Model, path: str, places: Mapping[str, Place] | None = None)
         except ValueError as error:
             wrong.append(Fault(at.path, at.line, at.column, f"material {number}: {error}", "", "constants of the law"))
     return wrong, missing
+
+
+def _probes_of_nothing(model: Model, path: str) -> list[Fault]:
+    """History particles and transducers that name a particle or a material that there is not."""
+    control, particles = model.particle_control, model.particles
+    assert control is not None
+    assert particles is not None
+    n = len(particles)
+    lost = [i for i in control.history_particles if not 1 <= i <= n]
+    faults = [Fault(path, 1, 1, "no such history particle", str(i), f"a number from 1 to {n}") for i in lost]
+    known = ", ".join(map(str, sorted(model.materials)))
+    for *_, material in control.transducers:
+        if int(material) not in model.materials:
+            faults.append(Fault(path, 1, 1, "a transducer of no material", str(int(material)), f"one of {known}"))
+    return faults
 
 
 def _not_yet(c: ParticleControl) -> list[tuple[str, str, str]]:

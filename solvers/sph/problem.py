@@ -67,7 +67,8 @@ class Problem:
     body_force: acceleration (3,); body_curve: or times (k,) and accelerations (k, 3), linear between them. original: do
     as the original program does where that differs. kernel: a name of `smoothing.NAMES`. h_option: 0 h is constant, 1
     dh/dt = h div v / d, 2 h = h0 (rho0/rho)^(1/d). relaxation: factor of all velocities in each step (dynamic
-    relaxation), 1 for none. planes: of the boundary, see `ghosts`. cures: see `Cures`.
+    relaxation), 1 for none. planes: of the boundary, see `ghosts`. traced: ids of
+    particles, transducers: places and indices of bodies, whose state each row of the history has. cures: see `Cures`.
     """
 
     dimension: int
@@ -94,6 +95,8 @@ class Problem:
     h_option: int = 0
     relaxation: float = 1.0
     planes: tuple[Plane, ...] = ()
+    traced: tuple[int, ...] = ()
+    transducers: tuple[tuple[float, float, float, int], ...] = ()
     cures: Cures = field(default_factory=lambda: Cures())
     title: str = field(default="")
 

@@ -246,6 +246,15 @@ def value_at(shape, q):
 
 
 @kernel
+def value_many(shape, q):
+    """`shape_value` of an array."""
+    values = np.empty_like(q)
+    for i in range(len(q)):
+        values[i] = shape_value(shape, q[i])
+    return values
+
+
+@kernel
 def slope_at(shape, q):
     """`shape_slope` for Python."""
     return shape_slope(shape, q, 1.0 / q)

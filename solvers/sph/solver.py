@@ -19,7 +19,7 @@ from ..frame import Frame
 from ..materials import PLASTIC_STRAIN, constant_wave, sound_speed, state_rows
 from ..neighbours import FAR, Cells, NeighbourList
 from ..threads import available, run
-from . import across, ghosts, measures, step
+from . import across, ghosts, measures, probes, step
 from .problem import STEP_OPTIONS, Problem
 from .smoothing import normaliser, shape_of, value_at
 from .state import Arrays, Numbers, Rows, State
@@ -511,7 +511,20 @@ class Solver:
             **stored,
             "max_plastic_strain": float(plastic.max()),
             "step": float(self.step),
+            **self._probes(),
         }
+
+    def _probes(self) -> dict[str, float]:
+        """The columns of transducers and traced particles."""
+        p = self.problem
+        columns = {}
+        if p.transducers:
+            table = np.array(p.transducers)
+            found = probes.pressures(self._state, self.live, self._shape, table[:, :3], table[:, 3].astype(np.int64))
+            columns = {f"pressure_{k}": value for k, value in enumerate(found.tolist(), start=1)}
+        if p.traced:
+            columns |= probes.traces(self._state, self.live, np.array(p.traced), self._velocity())
+        return columns
 
     def energy_report(self) -> dict[str, float]:
         """Energies at the start and now.

@@ -129,3 +129,23 @@ def test_dynamic_relaxation_takes_motion_out() -> None:
         finished(one_body(x, -0.02 * x, relaxation=r), 20.0).energy_report()["kinetic"] for r in (1.0, 0.95)
     )
     assert relaxed < 1e-5 * free
+
+
+def test_transducers_and_traced_particles_are_in_the_history() -> None:
+    """A transducer in a linear pressure field reads it; a trace is what the frame says."""
+    x = lattice((10, 10), (0.0, 0.0))
+    stress = np.zeros((len(x), 6))
+    stress[:, :3] = -(1.0 - x[:, 1:2])
+    problem = one_body(
+        x, stress=stress, fixed=np.ones((len(x), 3), bool), traced=(7, 93),
+        transducers=((0.5, 0.5, 0.0, 0), (0.33, 0.71, 0.0, 0), (9.0, 9.0, 0.0, 0)),
+    )  # fmt: skip
+    solver = finished(problem, 0.05)
+    row, p = solver.history(), solver.frame().particles
+    assert row["pressure_1"] == pytest.approx(0.5, abs=1e-3)
+    assert row["pressure_2"] == pytest.approx(0.29, abs=1e-2)
+    assert row["pressure_3"] == 0.0
+    for number in (7, 93):
+        assert row[f"particle_{number}_x"] == p["position"][number - 1, 0]
+        assert row[f"particle_{number}_velocity_y"] == p["velocity"][number - 1, 1]
+        assert row[f"particle_{number}_pressure"] == pytest.approx(p["pressure"][number - 1], rel=1e-14)
