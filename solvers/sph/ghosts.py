@@ -117,6 +117,15 @@ def wrap(planes: tuple[Plane, ...], rows: list[Floats], n: int) -> None:
             rows[axis][:, :n] -= turns * length
 
 
+def mirrors(planes: tuple[Plane, ...]) -> Floats | None:
+    """(3, 2) coordinates of the symmetry planes below and above along each axis, infinite where there is none."""
+    found = np.tile([-np.inf, np.inf], (3, 1))
+    for plane in planes:
+        if plane.kind == SYMMETRY:
+            found[plane.axis, 0 if plane.side < 0 else 1] = plane.position
+    return found if np.any(np.isfinite(found)) else None
+
+
 def beyond_limit(planes: tuple[Plane, ...], x: Floats) -> NDArray[np.bool_]:
     """(n,) particles that left the problem. x: (d, n)."""
     out = np.zeros(x.shape[1], bool)

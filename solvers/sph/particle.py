@@ -230,12 +230,13 @@ def kick(i0, i1, z, cx, bx, body_work, duration, dt, arrays, numbers):
 
 
 @kernel
-def drift(i0, i1, z, smoothed, h_start, h_list, half_support, dt, arrays, numbers):
+def drift(i0, i1, z, smoothed, h_start, h_list, mirrors, half_support, dt, arrays, numbers):
     """x += v dt, with the smoothed velocities where there are such; smoothing lengths follow the last strain.
 
-    Returns the largest distance from where the list was built, with what the smoothing length has grown since, squared,
-    and the index of a particle that moved further than its smoothing length or whose velocity is not a number (-1:
-    none).
+    mirrors: None, or (3, 2) coordinates of the symmetry planes (infinite where there is none), which throw back what
+    passes them: its image alone does not hold a lonely particle. Returns the largest distance from where the list was
+    built, with what the smoothing length has grown since, squared, and the index of a particle that moved further than
+    its smoothing length or whose velocity is not a number (-1: none).
     """
     x, y, u, v = arrays.x, arrays.y, arrays.u, arrays.v
     largest = 0.0
@@ -257,12 +258,26 @@ def drift(i0, i1, z, smoothed, h_start, h_list, half_support, dt, arrays, number
             wi = 0.0 if fixed & 4 else wi
         x[i] += ui * dt
         y[i] += vi * dt
+        if z is not None:
+            z[i] += wi * dt
+        if mirrors is not None:
+            if not mirrors[0, 0] <= x[i] <= mirrors[0, 1]:
+                x[i] = 2.0 * (mirrors[0, 0] if x[i] < mirrors[0, 0] else mirrors[0, 1]) - x[i]
+                ui = -ui
+                u[i] = -u[i]
+            if not mirrors[1, 0] <= y[i] <= mirrors[1, 1]:
+                y[i] = 2.0 * (mirrors[1, 0] if y[i] < mirrors[1, 0] else mirrors[1, 1]) - y[i]
+                vi = -vi
+                v[i] = -v[i]
+            if z is not None and not mirrors[2, 0] <= z[i] <= mirrors[2, 1]:
+                z[i] = 2.0 * (mirrors[2, 0] if z[i] < mirrors[2, 0] else mirrors[2, 1]) - z[i]
+                wi = -wi
+                arrays.w[i] = -arrays.w[i]
         arrays.x_half[i] = x[i] - 0.5 * dt * ui
         arrays.y_half[i] = y[i] - 0.5 * dt * vi
         speed2 = ui * ui + vi * vi
         moved2 = (x[i] - arrays.x_list[i]) ** 2 + (y[i] - arrays.y_list[i]) ** 2
         if z is not None:
-            z[i] += wi * dt
             arrays.z_half[i] = z[i] - 0.5 * dt * wi
             speed2 += wi * wi
             moved2 += (z[i] - arrays.z_list[i]) ** 2
@@ -317,6 +332,6 @@ def critical_step(i0, i1, z, wave, numbers, arrays):
         length = arrays.h[i]
         if option == 2:
             length = np.sqrt(arrays.nearest[i])
-            length = min(length, 2.0 * arrays.h[i])
+            length = min(max(length, numbers.least_distance * arrays.h[i]), 2.0 * arrays.h[i])
         least = min(least, length / (c + np.sqrt(speed2)))
     return least

@@ -25,6 +25,7 @@ from .smoothing import normaliser, shape_of, value_at
 from .state import Arrays, Numbers, Rows, State
 
 SKIN = 0.25  # of the largest h: the list's spare radius
+IMAGE = 0.25  # of h: a particle nearer to its image than this shortens the step no further
 CHECKED = 50  # steps between looks at the energy balance
 CREATED = 3.0  # so many times the energy put in cannot come out of a stable run
 SMALL = 2000  # fewer particles run on one thread: a parallel region costs more than it saves
@@ -65,6 +66,7 @@ class Solver:
         self._has = has
         self._state = State(n, problem.dimension, has)
         self._images = ghosts.Images(np.zeros(0, np.int64), np.zeros((3, 0)), np.zeros((3, 0)))
+        self._mirrors = None if problem.original else ghosts.mirrors(problem.planes)
         self._mirrored = any(p.kind in (ghosts.SYMMETRY, ghosts.PERIODIC) for p in problem.planes)
         self._progress = np.zeros(step.PROGRESS)
         self._list = NeighbourList(n)
@@ -119,6 +121,7 @@ class Solver:
             pair_viscosity=np.array([(b.alpha, b.beta) for b in p.bodies]),
             density_diffusion=np.array([b.density_diffusion for b in p.bodies]),
             stress_diffusion=np.array([b.stress_diffusion for b in p.bodies]),
+            least_distance=0.0 if self._mirrors is None else IMAGE,
             inverse_w=1.0 / value_at(self._shape, spacing),
             step_option=p.step_option,
             step_factor=p.step_factor,
@@ -271,6 +274,7 @@ class Solver:
                 None if images is None else images.source,
                 None if images is None else images.sign,
                 None if images is None else images.shift,
+                self._mirrors,
                 a,
                 self._numbers,
                 self._laws,

@@ -97,7 +97,7 @@ def body_force_at(time, numbers):
 def advance(
     thread, threads, sync, n, offset, shape, solid, z, h, mass, nearest, line, cx, potential, mixed, correction, bx,
     artificial, h_list, h_start, density_rate, stress_rate, heat, smoothed, smoothing, body_work, wave,
-    image_source, image_sign, image_shift, arrays, numbers, laws, progress, until, pause, steps, reach2,
+    image_source, image_sign, image_shift, mirrors, arrays, numbers, laws, progress, until, pause, steps, reach2,
 ):  # fmt: skip
     """Take up to `steps` steps towards `until`, each thread for its own range; returns why it stopped.
 
@@ -198,7 +198,7 @@ def advance(
                 c = claim(sync, taken)
             taken += chunks + threads
             barrier(sync, threads)
-        moved, bad = drift(i0, i1, z, smoothed, h_start, h_list, 0.5 * shape.support, now, arrays, numbers)
+        moved, bad = drift(i0, i1, z, smoothed, h_start, h_list, mirrors, 0.5 * shape.support, now, arrays, numbers)
         arrays.reduced[thread, 0] = moved
         arrays.reduced[thread, 1] = bad
         barrier(sync, threads)

@@ -93,7 +93,7 @@ def phases(problem: Problem, builds: float) -> dict[str, float]:
             for m in (0, 1)),
         "critical step": nanoseconds(lambda: particle.critical_step(0, n, a.z, None, k, a), n),
         "kick": nanoseconds(lambda: particle.kick(0, n, a.z, None, None, None, 1e-15, 1e-15, a, k), n),
-        "drift": nanoseconds(lambda: particle.drift(0, n, a.z, None, None, None, 1.0, 1e-15, a, k), n),
+        "drift": nanoseconds(lambda: particle.drift(0, n, a.z, None, None, None, None, 1.0, 1e-15, a, k), n),
         "list": builds * nanoseconds(
             lambda: s._list.build(cells, a.x_list, a.y_list, a.z_list, radius=radius, skin=s._skin), n),
         "cells and sort": builds * nanoseconds(

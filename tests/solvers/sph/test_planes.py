@@ -149,3 +149,18 @@ def test_transducers_and_traced_particles_are_in_the_history() -> None:
         assert row[f"particle_{number}_x"] == p["position"][number - 1, 0]
         assert row[f"particle_{number}_velocity_y"] == p["velocity"][number - 1, 1]
         assert row[f"particle_{number}_pressure"] == pytest.approx(p["pressure"][number - 1], rel=1e-14)
+
+
+def test_a_symmetry_plane_throws_a_lonely_particle_back() -> None:
+    x = np.array([[0.5, 0.3, 0.0]])
+    v = np.array([[-0.5, -0.2, 0.0]])
+    planes = (Plane(0, -1, SYMMETRY, 0.0), Plane(1, -1, SYMMETRY, 0.0), Plane(0, 1, SYMMETRY, 1.0))
+    soft = one_body(x, v, planes=planes, law=_SOFT, step_option=1)
+    solver = Solver(soft)
+    places = []
+    for until in np.arange(0.2, 4.1, 0.2):
+        solver.advance(float(until), 10**6)
+        places.append(solver.frame().particles["position"][0])
+    assert np.min(places) >= 0.0
+    assert np.max(places) <= 1.0
+    assert solver.frame().particles["velocity"][0] == pytest.approx([-0.5, 0.2, 0.0], abs=0.06)
