@@ -21,6 +21,7 @@ from ..jit import kernel
 from .law import dispatched, law_body
 
 ITERATIONS = 100  # bisection alone needs fewer
+CLOSE = 1e-8  # relative: Newton's error after a step of that size is of the order of its square
 
 
 class CapHardening(NamedTuple):
@@ -135,11 +136,12 @@ def _centre(law, share, stiffness, target, guess, low, high):
         else:
             low = x
         new = x - value / (share + stiffness * slope)
-        if not low <= new <= high:
+        newton = low <= new <= high
+        if not newton:
             new = 0.5 * (low + high)
         change = abs(new - x)
         x = new
-        if change <= least or change <= 1e-15 * abs(x):
+        if change <= least or (newton and change <= CLOSE * abs(x)):
             break
     return x
 
@@ -163,11 +165,12 @@ def _on_envelope(law, bulk, shear, first, root, centre):
                 low = x
             curvature = -law.decay * (slope - law.theta)
             new = x - value / (1.0 + scale * (slope * slope - (root - strength) * curvature))
-            if not low <= new <= high:
+            newton = low <= new <= high
+            if not newton:
                 new = 0.5 * (low + high)
             change = abs(new - x)
             x = new
-            if change <= 1e-15 * abs(x) or change <= 1e-16 * (abs(first) + abs(centre)):
+            if change <= 1e-16 * (abs(first) + abs(centre)) or (newton and change <= CLOSE * abs(x)):
                 break
     if not law.soil:
         return (centre if corner else x), centre
@@ -220,7 +223,7 @@ def _on_ellipse(law, bulk, shear, first, root, centre):
             new = x - value / (
                 (d * fall - square * left * left * 2.0 * shear * square * growth / shrink) / radius - ratio * slope
             )
-            if abs(value) <= 1e-14 * radius:
+            if abs(value) <= 1e-12 * radius:
                 break
         else:
             value = -1.0
