@@ -93,12 +93,10 @@ def inside(law, first, root, centre):
 
 @kernel
 def cap_return(law, shear, first, root, centre):
-    """I, J, L of the new stress, and the work of its plastic strain; (first, root) is the trial, not `inside`."""
+    """I, J, L of the new stress; (first, root) is the trial, not `inside`."""
     bulk = law.lame + 2.0 / 3.0 * law.shear
     if first < law.tension:
-        # the shear is lost at once: what it held is dissipated
-        work = law.tension * (first - law.tension) / (9.0 * bulk) + root * root / (2.0 * shear)
-        return law.tension, 0.0, centre, work
+        return law.tension, 0.0, centre
     if first <= centre:
         new, centre = _on_envelope(law, bulk, shear, first, root, centre)
         strength, _ = envelope(law, new)
@@ -111,8 +109,7 @@ def cap_return(law, shear, first, root, centre):
         new = centre
         strength, _ = envelope(law, new)
         left = min(root, strength)
-    work = max(0.0, new * (first - new) / (9.0 * bulk) + left * (root - left) / shear)
-    return new, left, centre, work
+    return new, left, centre
 
 
 @kernel

@@ -29,6 +29,17 @@ def elastic_trial(
 
 
 @kernel
+def flow_work(bulk, shear, mean, trial, new, along, root, scale):
+    """Work of the plastic strain of an increment per volume, by the mean of old and new stress; at least 0.
+
+    So it is what the increment's work, by that mean, leaves over the elastic energy's growth. mean, trial, new: mean
+    stresses; the deviator ends as `scale` of its trial, whose invariant J is `root`; along: old deviator : trial.
+    """
+    volume = 0.5 * (mean + new) * (trial - new) / bulk
+    return max(0.0, volume + 0.25 * (1.0 - scale) * (along + 2.0 * scale * root * root) / shear)
+
+
+@kernel
 def second_invariant(s_xx, s_yy, s_zz, s_xy, s_yz, s_zx):
     """J2 = s:s/2 of a deviator."""
     return 0.5 * (s_xx * s_xx + s_yy * s_yy + s_zz * s_zz) + s_xy * s_xy + s_yz * s_yz + s_zx * s_zx
