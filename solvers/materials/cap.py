@@ -26,7 +26,7 @@ from typing import NamedTuple
 from .cap_return import CapHardening, CapHardeningGeneral, cap_return, compaction, envelope, inside
 from .invariants import elastic_trial, flow_work, second_invariant
 from .law import PLASTIC_STRAIN, law_body, rotate_state, state_rows, stress_update, wave_speed
-from .rotation import spin_rotation
+from .rotation import rotate_rows
 
 GROWTH = 1  # row of L - L(start)
 
@@ -232,15 +232,7 @@ def _kinematic(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, 
 
 @law_body(rotate_state, KinematicCap)
 def _rotate(law, w_xy, w_yz, w_zx, state, i):
-    a_xx, a_yy, a_zz, a_xy, a_yz, a_zx = spin_rotation(
-        w_xy, w_yz, w_zx, state[2, i], state[3, i], state[4, i], state[5, i], state[6, i], state[7, i]
-    )
-    state[2, i] = a_xx
-    state[3, i] = a_yy
-    state[4, i] = a_zz
-    state[5, i] = a_xy
-    state[6, i] = a_yz
-    state[7, i] = a_zx
+    rotate_rows(w_xy, w_yz, w_zx, state, 2, i)
 
 
 @law_body(wave_speed, KinematicCap)

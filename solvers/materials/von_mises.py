@@ -19,7 +19,7 @@ from typing import NamedTuple
 from .hardening import Linear, Table, radial_return
 from .invariants import THIRD, elastic_trial, second_invariant
 from .law import PLASTIC_STRAIN, lame_constants, law_body, rotate_state, state_rows, stress_update
-from .rotation import spin_rotation
+from .rotation import rotate_rows
 
 
 class VonMisesIsotropic(NamedTuple):
@@ -148,15 +148,7 @@ def _mixed(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy
 
 @law_body(rotate_state, VonMisesMixed)
 def _mixed_rotate(law, w_xy, w_yz, w_zx, state, i):
-    a_xx, a_yy, a_zz, a_xy, a_yz, a_zx = spin_rotation(
-        w_xy, w_yz, w_zx, state[1, i], state[2, i], state[3, i], state[4, i], state[5, i], state[6, i]
-    )
-    state[1, i] = a_xx
-    state[2, i] = a_yy
-    state[3, i] = a_zz
-    state[4, i] = a_xy
-    state[5, i] = a_yz
-    state[6, i] = a_zx
+    rotate_rows(w_xy, w_yz, w_zx, state, 1, i)
 
 
 @law_body(stress_update, VonMisesCurve)
