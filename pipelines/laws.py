@@ -1,7 +1,7 @@
 """From a material's law by name to the solvers' law: names and numbers change hands, nothing is computed.
 
 The names are `translators.laws`'s. ValueError: constants that make no sense. Unsupported: a law, or a part of one,
-that the solvers do not compute.
+that the solvers do not compute. A cut-off of the pressure is a tension, whichever its sign: decks have both.
 """
 
 from __future__ import annotations
@@ -111,14 +111,14 @@ def _hydro(p: Values, points: Floats | None, eos: laws.Eos | None) -> Law:
         eos,
         a1=p["a1"],
         a2=p["a2"],
-        cutoff=p["pressure_cutoff"] or -math.inf,
+        cutoff=-abs(p["pressure_cutoff"]) or -math.inf,
         spall=int(p["spall"] or 1) if p["spall"] in (0.0, 1.0, 2.0, 3.0) else -1,
         failure=p["failure_strain"] or math.inf,
     )
 
 
 def _fluid(p: Values, points: Floats | None, eos: laws.Eos | None) -> Law:
-    return laws.fluid(eos, viscosity=p["viscosity"], cutoff=p["pressure_cutoff"])
+    return laws.fluid(eos, viscosity=p["viscosity"], cutoff=-abs(p["pressure_cutoff"]))
 
 
 def _cap(p: Values, points: Floats | None, eos: laws.Eos | None) -> Law:
@@ -133,22 +133,25 @@ def _cap(p: Values, points: Floats | None, eos: laws.Eos | None) -> Law:
         gamma=p["gamma"],
         decay=p["beta"],
         ratio=p["R"],
-        tension=p["tension_cutoff"],
+        tension=_tension(p),
         soil=p["ftype"] != 2.0,
         rate=p["C"],
         size=p["N"],
     )
 
 
+def _tension(p: Values) -> float:
+    """Greater than 0 it would be a pressure without any load; decks have it so for a NaN of the original program's."""
+    return min(0.0, p["tension_cutoff"])
+
+
 def _drucker_prager(p: Values, points: Floats | None, eos: laws.Eos | None) -> Law:
     if p["D"] == 0.0 and p["W"] == 0.0:
-        return laws.drucker_prager(p["E"], p["nu"], p["k"], p["alpha"], tension=p["tension_cutoff"])
+        return laws.drucker_prager(p["E"], p["nu"], p["k"], p["alpha"], tension=_tension(p))
     laws.Elastic.from_engineering(p["E"], p["nu"])  # refuses what has no moduli
     bulk, shear = bulk_and_shear(p["E"], p["nu"])
     hardening = laws.CapHardening(p["W"], p["D"], p["X0"])
-    return laws.cap(
-        bulk, shear, p["k"], hardening=hardening, theta=p["alpha"], ratio=p["R"], tension=p["tension_cutoff"]
-    )
+    return laws.cap(bulk, shear, p["k"], hardening=hardening, theta=p["alpha"], ratio=p["R"], tension=_tension(p))
 
 
 def _drucker_prager_soil(p: Values, points: Floats | None, eos: laws.Eos | None) -> Law:

@@ -24,9 +24,9 @@ import math
 from typing import NamedTuple
 
 from .cap_return import CapHardening, CapHardeningGeneral, cap_return, compaction, envelope, inside
-from .invariants import elastic_trial, second_invariant
+from .invariants import elastic_trial, flow_work, second_invariant
 from .law import PLASTIC_STRAIN, law_body, rotate_state, state_rows, stress_update, wave_speed
-from .rotation import spin_rotation
+from .rotation import rotate_rows
 
 GROWTH = 1  # row of L - L(start)
 
@@ -141,14 +141,19 @@ def _update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_x
     volumetric, mean, x_xx, x_yy, x_zz, x_xy, x_yz, x_zx = elastic_trial(
         law.shear, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx
     )
-    mean += (law.lame + 2.0 / 3.0 * law.shear) * volumetric
+    bulk = law.lame + 2.0 / 3.0 * law.shear
+    trial = mean + bulk * volumetric
     root = math.sqrt(second_invariant(x_xx, x_yy, x_zz, x_xy, x_yz, x_zx))
     centre = max(0.0, law.start + state[GROWTH, i])
     work = 0.0
-    if not inside(law, -3.0 * mean, root, centre):
-        first, new, centre, work = cap_return(law, law.shear, -3.0 * mean, root, centre)
-        mean = -first / 3.0
+    if inside(law, -3.0 * trial, root, centre):
+        mean = trial
+    else:
+        first, new, centre = cap_return(law, law.shear, -3.0 * trial, root, centre)
         scale = new / root if root > 0.0 else 0.0
+        along = s_xx * x_xx + s_yy * x_yy + s_zz * x_zz + 2.0 * (s_xy * x_xy + s_yz * x_yz + s_zx * x_zx)
+        work = flow_work(bulk, law.shear, mean, trial, -first / 3.0, along, root, scale)
+        mean = -first / 3.0
         state[PLASTIC_STRAIN, i] += (root - new) / (math.sqrt(3.0) * law.shear)
         state[GROWTH, i] = centre - law.start
         x_xx *= scale
@@ -165,7 +170,8 @@ def _kinematic(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, 
     volumetric, mean, x_xx, x_yy, x_zz, x_xy, x_yz, x_zx = elastic_trial(
         law.cap.shear, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx
     )
-    mean += (law.cap.lame + 2.0 / 3.0 * law.cap.shear) * volumetric
+    bulk = law.cap.lame + 2.0 / 3.0 * law.cap.shear
+    trial = mean + bulk * volumetric
     a_xx = state[2, i]
     a_yy = state[3, i]
     a_zz = state[4, i]
@@ -181,8 +187,10 @@ def _kinematic(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, 
     root = math.sqrt(second_invariant(x_xx, x_yy, x_zz, x_xy, x_yz, x_zx))
     centre = max(0.0, law.cap.start + state[GROWTH, i])
     work = 0.0
-    if not inside(law.cap, -3.0 * mean, root, centre):
-        first = -3.0 * mean
+    if inside(law.cap, -3.0 * trial, root, centre):
+        mean = trial
+    else:
+        first = -3.0 * trial
         along = 0.0
         if root > 0.0:
             along = (a_xx * x_xx + a_yy * x_yy + a_zz * x_zz + 2.0 * (a_xy * x_xy + a_yz * x_yz + a_zx * x_zx)) / root
@@ -191,9 +199,11 @@ def _kinematic(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, 
         share = max(0.0, 1.0 - along / (2.0 * law.size)) / (1.0 + 0.5 * law.rate * over / (law.cap.shear * law.size))
         shear = law.cap.shear + 0.5 * law.rate * share
         cut = first < law.cap.tension
-        first, new, centre, work = cap_return(law.cap, shear, first, root, centre)
-        mean = -first / 3.0
+        first, new, centre = cap_return(law.cap, shear, first, root, centre)
         scale = new / root if root > 0.0 else 0.0
+        old = s_xx * x_xx + s_yy * x_yy + s_zz * x_zz + 2.0 * (s_xy * x_xy + s_yz * x_yz + s_zx * x_zx)
+        work = flow_work(bulk, shear, mean, trial, -first / 3.0, old - along * root, root, scale)
+        mean = -first / 3.0
         back = 0.5 * law.rate * share * (1.0 - scale) / shear
         if root > 0.0:
             back = min(back, max(0.0, law.size - 0.5 * along) / root)
@@ -222,15 +232,7 @@ def _kinematic(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, 
 
 @law_body(rotate_state, KinematicCap)
 def _rotate(law, w_xy, w_yz, w_zx, state, i):
-    a_xx, a_yy, a_zz, a_xy, a_yz, a_zx = spin_rotation(
-        w_xy, w_yz, w_zx, state[2, i], state[3, i], state[4, i], state[5, i], state[6, i], state[7, i]
-    )
-    state[2, i] = a_xx
-    state[3, i] = a_yy
-    state[4, i] = a_zz
-    state[5, i] = a_xy
-    state[6, i] = a_yz
-    state[7, i] = a_zx
+    rotate_rows(w_xy, w_yz, w_zx, state, 2, i)
 
 
 @law_body(wave_speed, KinematicCap)

@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from typing import Literal, NamedTuple
 
-from .invariants import elastic_trial, second_invariant
+from .invariants import elastic_trial, flow_work, second_invariant
 from .law import PLASTIC_STRAIN, lame_constants, law_body, state_rows, stress_update
 
 Match = Literal["compression", "extension", "plane_strain"]
@@ -85,15 +85,13 @@ def _update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_x
         law.shear, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx
     )
     bulk = law.lame + 2.0 / 3.0 * law.shear
-    trial = -3.0 * (mean + bulk * volumetric)
+    trial = mean + bulk * volumetric
     root = math.sqrt(second_invariant(x_xx, x_yy, x_zz, x_xy, x_yz, x_zx))
-    first = trial
+    first = -3.0 * trial
     left = root
-    work = 0.0
     if first < law.tension:
         first = law.tension
         left = 0.0
-        work = root * root / (2.0 * law.shear)  # the shear is lost at once: what it held is dissipated
     else:
         over = root - law.k - law.slope * first
         if over > 0.0:
@@ -102,11 +100,14 @@ def _update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_x
             if left < 0.0:
                 first = law.apex
                 left = 0.0
-    if left < root:
-        state[PLASTIC_STRAIN, i] += (root - left) / (math.sqrt(3.0) * law.shear)
-    work += max(0.0, first * (trial - first) / (9.0 * bulk) + left * (root - left) / law.shear)
+    new = -first / 3.0
     scale = left / root if root > 0.0 else 0.0
-    mean = -first / 3.0
+    work = 0.0
+    if left < root or first > -3.0 * trial:
+        state[PLASTIC_STRAIN, i] += (root - left) / (math.sqrt(3.0) * law.shear)
+        along = s_xx * x_xx + s_yy * x_yy + s_zz * x_zz + 2.0 * (s_xy * x_xy + s_yz * x_yz + s_zx * x_zx)
+        work = flow_work(bulk, law.shear, mean, trial, new, along, root, scale)
+    mean = new
     return scale * x_xx + mean, scale * x_yy + mean, scale * x_zz + mean, scale * x_xy, scale * x_yz, scale * x_zx, work
 
 

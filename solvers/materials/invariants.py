@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from ..jit import kernel
 
+THIRD = 1.0 / 3.0  # dividing costs the laws more than the rest of their elastic step
+
 
 @kernel
 def elastic_trial(
@@ -11,9 +13,9 @@ def elastic_trial(
 ):  # fmt: skip
     """Volume increment, mean stress before it, and the deviator (6) of an elastic strain increment."""
     volumetric = de_xx + de_yy + de_zz
-    mean = (s_xx + s_yy + s_zz) / 3.0
+    mean = (s_xx + s_yy + s_zz) * THIRD
     g2 = 2.0 * shear
-    shift = mean + g2 * volumetric / 3.0
+    shift = mean + g2 * THIRD * volumetric
     return (
         volumetric,
         mean,
@@ -24,6 +26,17 @@ def elastic_trial(
         s_yz + g2 * de_yz,
         s_zx + g2 * de_zx,
     )
+
+
+@kernel
+def flow_work(bulk, shear, mean, trial, new, along, root, scale):
+    """Work of the plastic strain of an increment per volume, by the mean of old and new stress; at least 0.
+
+    So it is what the increment's work, by that mean, leaves over the elastic energy's growth. mean, trial, new: mean
+    stresses; the deviator ends as `scale` of its trial, whose invariant J is `root`; along: old deviator : trial.
+    """
+    volume = 0.5 * (mean + new) * (trial - new) / bulk
+    return max(0.0, volume + 0.25 * (1.0 - scale) * (along + 2.0 * scale * root * root) / shear)
 
 
 @kernel

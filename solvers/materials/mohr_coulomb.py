@@ -164,7 +164,16 @@ def _update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_x
     kept = room >= 0.0 and square * (3.0 + law.sine**2) <= 3.0 * room * room
     if kept and left >= 0.0 and 4.0 * square <= 3.0 * left * left:
         return x_xx + mean, x_yy + mean, x_zz + mean, x_xy, x_yz, x_zx, 0.0
-    return _principal_return(law, x_xx + mean, x_yy + mean, x_zz + mean, x_xy, x_yz, x_zx, state, i)
+    n_xx, n_yy, n_zz, n_xy, n_yz, n_zx = _principal_return(
+        law, x_xx + mean, x_yy + mean, x_zz + mean, x_xy, x_yz, x_zx, state, i
+    )
+    # by the mean of old and new stress, as in `flow_work`: plastic strains by Hooke's inverse
+    g2 = 2.0 * law.shear
+    d_xx, d_yy, d_zz = x_xx + mean - n_xx, x_yy + mean - n_yy, x_zz + mean - n_zz
+    share = law.lame / (3.0 * law.lame + g2) * (d_xx + d_yy + d_zz)
+    work = (s_xx + n_xx) * (d_xx - share) + (s_yy + n_yy) * (d_yy - share) + (s_zz + n_zz) * (d_zz - share)
+    work += 2.0 * ((s_xy + n_xy) * (x_xy - n_xy) + (s_yz + n_yz) * (x_yz - n_yz) + (s_zx + n_zx) * (x_zx - n_zx))
+    return n_xx, n_yy, n_zz, n_xy, n_yz, n_zx, max(0.0, 0.5 * work / g2)
 
 
 @kernel
@@ -177,16 +186,11 @@ def _principal_return(law, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, state, i):
     if p < q:
         p, q, ax, bx, ay, by, az, bz = q, p, bx, ax, by, ay, bz, az
     if _kept(law, p, q, r, 0.0):
-        return s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, 0.0
+        return s_xx, s_yy, s_zz, s_xy, s_yz, s_zx
     n, m, l = mohr_coulomb_return(law, p, q, r)
-    # plastic strains by Hooke's inverse
-    bulk3 = 3.0 * law.lame + 2.0 * law.shear
-    g2 = 2.0 * law.shear
-    share = law.lame / bulk3 * (p - n + q - m + r - l)
-    e1, e2, e3 = (p - n - share) / g2, (q - m - share) / g2, (r - l - share) / g2
-    third = (e1 + e2 + e3) / 3.0
-    state[PLASTIC_STRAIN, i] += math.sqrt(2.0 / 3.0 * ((e1 - third) ** 2 + (e2 - third) ** 2 + (e3 - third) ** 2))
-    work = max(0.0, n * e1 + m * e2 + l * e3)
+    d1, d2, d3 = p - n, q - m, r - l
+    square = (d1 - d2) ** 2 + (d2 - d3) ** 2 + (d3 - d1) ** 2
+    state[PLASTIC_STRAIN, i] += math.sqrt(2.0 * square) / (6.0 * law.shear)
     return (
         n * ax * ax + m * bx * bx + l * cx * cx,
         n * ay * ay + m * by * by + l * cy * cy,
@@ -194,7 +198,6 @@ def _principal_return(law, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, state, i):
         n * ax * ay + m * bx * by + l * cx * cy,
         n * ay * az + m * by * bz + l * cy * cz,
         n * az * ax + m * bz * bx + l * cz * cx,
-        work,
     )
 
 

@@ -103,7 +103,7 @@ class Point:
         held = np.asarray(held, dtype=bool)
         free = np.zeros(6)
         pieces = []
-        scale = float(np.abs(np.diag(self._stiffness())).max())
+        scale = self._stiffness()
         for increment, wanted in zip(strain, stress, strict=True):
 
             def miss(x: Floats, increment: Floats = increment, wanted: Floats = wanted) -> Floats:
@@ -121,11 +121,15 @@ class Point:
             pieces.append(self.move(free[None]))
         return Path(*(np.concatenate(columns) for columns in zip(*pieces, strict=True)))
 
-    def _stiffness(self) -> Floats:
-        """The answer to a small strain of each component, (6, 6)."""
+    def _stiffness(self) -> float:
+        """The greatest answer to a small strain, pressed or pulled [pressure]; 1 where there is none."""
         small = 1e-9
-        rows = [self._answer(small * row[None], None, self.state.copy()).stress[0] - self.stress for row in np.eye(6)]
-        return np.array(rows) / small
+        answers = [
+            self._answer(size * row[None], None, self.state.copy()).stress[0] - self.stress
+            for size in (small, -small)
+            for row in np.eye(6)
+        ]
+        return float(np.abs(answers).max()) / small or 1.0
 
 
 def drive(

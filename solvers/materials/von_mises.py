@@ -17,9 +17,9 @@ import math
 from typing import NamedTuple
 
 from .hardening import Linear, Table, radial_return
-from .invariants import elastic_trial, second_invariant
+from .invariants import THIRD, elastic_trial, second_invariant
 from .law import PLASTIC_STRAIN, lame_constants, law_body, rotate_state, state_rows, stress_update
-from .rotation import spin_rotation
+from .rotation import rotate_rows
 
 
 class VonMisesIsotropic(NamedTuple):
@@ -80,38 +80,34 @@ def von_mises(
 @law_body(stress_update, VonMisesIsotropic)
 def _isotropic(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i):
     g2 = 2.0 * law.shear
-    de_m = (de_xx + de_yy + de_zz) / 3.0
-    s_m = (s_xx + s_yy + s_zz) / 3.0
-    mean = s_m + (3.0 * law.lame + g2) * de_m
-    s_xx += g2 * (de_xx - de_m) - s_m
-    s_yy += g2 * (de_yy - de_m) - s_m
-    s_zz += g2 * (de_zz - de_m) - s_m
-    s_xy += g2 * de_xy
-    s_yz += g2 * de_yz
-    s_zx += g2 * de_zx
-    square = 1.5 * (s_xx * s_xx + s_yy * s_yy + s_zz * s_zz + 2.0 * (s_xy * s_xy + s_yz * s_yz + s_zx * s_zx))
+    de_m = (de_xx + de_yy + de_zz) * THIRD
+    mean = (s_xx + s_yy + s_zz) * THIRD
+    x_xx = s_xx - mean + g2 * (de_xx - de_m)
+    x_yy = s_yy - mean + g2 * (de_yy - de_m)
+    x_zz = s_zz - mean + g2 * (de_zz - de_m)
+    x_xy = s_xy + g2 * de_xy
+    x_yz = s_yz + g2 * de_yz
+    x_zx = s_zx + g2 * de_zx
+    mean += (3.0 * law.lame + g2) * de_m
+    square = 1.5 * (x_xx * x_xx + x_yy * x_yy + x_zz * x_zz + 2.0 * (x_xy * x_xy + x_yz * x_yz + x_zx * x_zx))
     strength = law.yield_stress + law.hardening * state[PLASTIC_STRAIN, i]
     work = 0.0
+    scale = 1.0
+    softness = 1.0 / (1.5 * g2 + law.hardening)  # out of the caller's loop: a division less
     if square > strength * strength:
         trial = math.sqrt(square)
-        increment = (trial - strength) / (1.5 * g2 + law.hardening)
+        increment = (trial - strength) * softness
         state[PLASTIC_STRAIN, i] += increment
         scale = 1.0 - 1.5 * g2 * increment / trial
-        s_xx *= scale
-        s_yy *= scale
-        s_zz *= scale
-        s_xy *= scale
-        s_yz *= scale
-        s_zx *= scale
         work = (strength + 0.5 * law.hardening * increment) * increment
-    return s_xx + mean, s_yy + mean, s_zz + mean, s_xy, s_yz, s_zx, work
+    return scale * x_xx + mean, scale * x_yy + mean, scale * x_zz + mean, scale * x_xy, scale * x_yz, scale * x_zx, work
 
 
 @law_body(stress_update, VonMisesMixed)
 def _mixed(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i):
     g2 = 2.0 * law.shear
-    de_m = (de_xx + de_yy + de_zz) / 3.0
-    mean = (s_xx + s_yy + s_zz) / 3.0
+    de_m = (de_xx + de_yy + de_zz) * THIRD
+    mean = (s_xx + s_yy + s_zz) * THIRD
     x_xx = s_xx - mean + g2 * (de_xx - de_m) - state[1, i]
     x_yy = s_yy - mean + g2 * (de_yy - de_m) - state[2, i]
     x_zz = s_zz - mean + g2 * (de_zz - de_m) - state[3, i]
@@ -123,9 +119,10 @@ def _mixed(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy
     strength = law.yield_stress + law.beta * law.hardening * state[PLASTIC_STRAIN, i]
     work = 0.0
     scale = 1.0
+    softness = 1.0 / (1.5 * g2 + law.hardening)  # out of the caller's loop: a division less
     if square > strength * strength:
         trial = math.sqrt(square)
-        increment = (trial - strength) / (1.5 * g2 + law.hardening)
+        increment = (trial - strength) * softness
         state[PLASTIC_STRAIN, i] += increment
         scale = 1.0 - 1.5 * g2 * increment / trial
         back = (1.0 - law.beta) * law.hardening * increment / trial
@@ -151,15 +148,7 @@ def _mixed(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy
 
 @law_body(rotate_state, VonMisesMixed)
 def _mixed_rotate(law, w_xy, w_yz, w_zx, state, i):
-    a_xx, a_yy, a_zz, a_xy, a_yz, a_zx = spin_rotation(
-        w_xy, w_yz, w_zx, state[1, i], state[2, i], state[3, i], state[4, i], state[5, i], state[6, i]
-    )
-    state[1, i] = a_xx
-    state[2, i] = a_yy
-    state[3, i] = a_zz
-    state[4, i] = a_xy
-    state[5, i] = a_yz
-    state[6, i] = a_zx
+    rotate_rows(w_xy, w_yz, w_zx, state, 1, i)
 
 
 @law_body(stress_update, VonMisesCurve)

@@ -60,6 +60,10 @@ def constitutive(
         o_zz = stress[2, i]
         volumetric = d_xx + d_yy + d_zz
         rho = density[i] * (1.0 - volumetric)
+        if (
+            not numbers.original
+        ):  # of the middle of the step, as the work is: an equation of state then conserves energy
+            rho = density[i] * (1.0 - 0.5 * volumetric) / (1.0 + 0.5 * volumetric)
         if density_rate is not None:
             rho += density_rate[i] * dt
         rho = min(max(rho, q[2]), q[3])

@@ -102,7 +102,7 @@ class Solver:
         normal = normaliser(self._shape, p.dimension)
         times, values = p.body_curve or (np.zeros(2), np.zeros((2, 3)))
         spacing = float(np.median((p.mass / p.density) ** (1.0 / p.dimension) / p.h))
-        wave = np.array([sound_speed(b.law, b.density) for b in p.bodies])
+        wave = np.array([sound_speed(b.law, b.density, self._first_energy(k)) for k, b in enumerate(p.bodies)])
         viscous = np.array([(b.linear, b.quadratic, b.least, b.most) for b in p.bodies])
         scale = normal / h ** (p.dimension + 2) if self._uniform_h else normal
         return Numbers(
@@ -130,6 +130,12 @@ class Solver:
             strength=np.array([b.strength for b in p.bodies]),
             exponent=np.array([b.exponent for b in p.bodies]),
         )
+
+    def _first_energy(self, body: int) -> float:
+        """Mean energy per unit mass of a body's particles at the start."""
+        p = self.problem
+        mine = p.body == body
+        return float(p.energy[mine].mean()) if p.energy is not None and np.any(mine) else 0.0
 
     def _fill_state(self) -> None:
         p, s, n = self.problem, self._state, self.n

@@ -50,6 +50,9 @@ def read_law(model: Model, material: Material, law: str, properties: Block) -> N
             start = take(layouts.CAP_START)
             if start != material.parameters["X0"]:
                 warn(5, f"X0 of card 5 ({start:g}) differs from card 4's ({material.parameters['X0']:g}), which counts")
+            if material.parameters["tension_cutoff"] > 0:
+                cutoff = material.parameters["tension_cutoff"]
+                warn(1, f"the tension cut-off {cutoff:g} is a pressure (compression is positive): a run here takes 0")
         case "hydro":
             material.tables |= _table(values, used)
         case "fluid" if material.id > 1 and material.id <= layouts.PROPERTY_CARDS:

@@ -286,6 +286,19 @@ def test_no_increment_takes_the_back_stress_past_its_size(rate: float, invariant
         assert invariants(state[:, 2:])[1].max() <= 0.03 * (1.0 + 1e-12)
 
 
+def test_the_back_stress_follows_its_rate_equation() -> None:
+    """Sheared on a level envelope: a = N (1 - exp(-C ep/N)), s = k + a, exactly."""
+    given = {"hardening": SAND, "tension": -1.0}
+    law = cap(K, G, 0.25, rate=2.0, size=0.1, **given)  # type: ignore[arg-type]
+    for m, close in ((2000, 1e-3), (20000, 1e-4)):
+        path = drive(law, along(0.0, 0.1, m))
+        shear = path.stress[:, 3]
+        plastic = path.strain[:, 3] - shear / (2.0 * G)
+        back = path.state[:, 5]
+        assert back == pytest.approx(0.1 * (1.0 - np.exp(-2.0 * plastic / 0.1)), abs=0.1 * close)
+        assert shear[-1] == pytest.approx(0.25 + back[-1], rel=1e-10)
+
+
 def test_kinematic_hardening_moves_the_envelope_by_its_size(invariants: Invariants) -> None:
     """Sheared back and forth from I = 0.5: strength Fe + N each way at last; C = 0 is the plain cap."""
     point = compacted(kinematic(20.0), 0.03, 0.5)

@@ -8,17 +8,29 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from zrno.solvers.jit import kernel
 from zrno.solvers.materials import (
+    CapHardening,
+    Elastic,
+    Fluid,
     Gruneisen,
+    Hydro,
+    Linear,
     LinearPolynomial,
     MieGruneisen,
     Monaghan,
     PerfectGas,
     Tait,
+    cap,
+    constant_wave,
+    failing,
     fluid,
+    hydro,
     sound_speed,
+    von_mises,
 )
 from zrno.solvers.materials.eos import coefficients
+from zrno.solvers.materials.law import wave_speed
 from zrno.solvers.materials.point import drive
 
 METALS = {"Al": (2785.0, 5328.0, 1.338, 2.0), "steel": (7900.0, 4600.0, 1.49, 2.17)}
@@ -140,3 +152,29 @@ def test_random_increments_of_a_fluid(eos: object, wander: Callable) -> None:
 def test_constants_that_make_no_sense_are_refused(given: dict[str, float], wrong: str) -> None:
     with pytest.raises(ValueError, match=wrong):
         fluid(PerfectGas(1.4), **given)
+
+
+@kernel
+def _speeds(law, rho, e, state, c):
+    for i in range(len(c)):
+        c[i] = wave_speed(law, rho[i], e[i], state, i)
+
+
+def test_the_wave_speed_is_asked_in_loops_where_it_is_not_constant() -> None:
+    """As a solver does: the current speed by density and energy, compiled, with or without a state."""
+    rho, e = np.array([2.0, 2.5]), np.array([0.5, 1.0])
+    for law in (
+        fluid(PerfectGas(1.4)),
+        hydro(3.0, Linear(1.0, 0.0), ALL[1]),
+        Elastic(1.0, 2.0),
+        failing(von_mises(1.0, 0.3, 1.0), 1.0),
+        cap(1.0, 1.0, 1.0, hardening=CapHardening(1.0, 1.0, 0.0), rate=1.0, size=1.0),
+    ):
+        assert constant_wave(law) == (not isinstance(law, Fluid | Hydro))
+        for state in (None, np.zeros((8, 2))):
+            c = np.empty(2)
+            _speeds(law, rho, e, state, c)
+            assert c == pytest.approx([sound_speed(law, *pair) for pair in zip(rho, e, strict=True)], rel=1e-14)
+            if constant_wave(law):
+                assert c[0] * rho[0] ** 0.5 == pytest.approx(c[1] * rho[1] ** 0.5)
+    assert sound_speed(fluid(PerfectGas(1.4)), 2.0, 0.5) == pytest.approx((1.4 * 0.4 * 0.5) ** 0.5)
