@@ -89,7 +89,7 @@ def particle_problem(
         planes=_planes(control),
         traced=tuple(control.history_particles),
         transducers=_transducers(control, numbers),
-        cures=_cures(control, chosen, [body.law for body in bodies]),
+        cures=_cures(control, chosen),
     )
 
 
@@ -115,11 +115,10 @@ def _transducers(control: ParticleControl, numbers: list[int]) -> tuple[tuple[fl
     return tuple(found)
 
 
-def _cures(control: ParticleControl, method: Sph, laws: list[Law]) -> Cures:
-    automatic = defaults.artificial_stress(laws) if method.cures == "auto" else 0.0
+def _cures(control: ParticleControl, method: Sph) -> Cures:
     return Cures(
         correction=bool(control.discretisation) if method.correction is None else method.correction,
-        artificial_stress=automatic if method.artificial_stress is None else method.artificial_stress,
+        artificial_stress=method.artificial_stress,
         xsph=(XSPH if control.velocity_option else 0.0) if method.xsph is None else method.xsph,
     )
 

@@ -30,7 +30,7 @@ class Sph(Section):
     kernel: Literal["cubic", "quintic", "lucy", "gaussian", "wendland_c2", "wendland_c4"] = "cubic"
     cures: Literal["auto", "none"] = "auto"
     correction: bool | None = None
-    artificial_stress: Part | None = None
+    artificial_stress: Part = 0.0
     density_diffusion: Part | None = None
     stress_diffusion: Part | None = None
     xsph: Part | None = None

@@ -1,17 +1,16 @@
-"""What a run does about the known defects of the method where nobody says otherwise, by the materials in it."""
+"""What a run does about the known defects of the method where nobody says otherwise, by the materials in it.
+
+Solids get no artificial stress unasked: it weakens tension at any strain, and the impact of two elastic cylinders
+(sample two_cylinders, spacing 1/20) is 4.3 % off with 0.3 of it, 3.6 % without. A body that stays whole has a better
+cure.
+"""
 
 from __future__ import annotations
 
 from ..materials import Law, family
 
-ARTIFICIAL_STRESS = 0.3  # solids: Gray, Monaghan & Swift (2001)
 DENSITY_DIFFUSION = 0.1  # fluids: Molteni & Colagrossi (2009)
 STRESS_DIFFUSION = 0.1  # grain: Nguyen et al. (2017)
-
-
-def artificial_stress(laws: list[Law]) -> float:
-    """Where a solid is among the materials: it alone bears tension."""
-    return ARTIFICIAL_STRESS if any(family(law) == "solid" for law in laws) else 0.0
 
 
 def density_diffusion(law: Law) -> float:

@@ -37,6 +37,11 @@ steel
        1      0.01       0.0       0.0
        2      0.01       0.0       0.0
 """.format(title="two particles")
+CAP = (
+    "       0.7\n      0.33\n     0.003\n      0.01\n       0.5\n       0.0\n",
+    "       0.7       4.0\n       0.3       0.5\n     0.003       0.1\n"
+    "       0.1       0.0\n       0.0      0.01\n       0.0       1.0\n",
+)
 PLANES = f"{1:10d}{0:10d}{0:10d}{0:10d}{0:10d}{0:10d}\n" + f"{0.0:10}" * 6 + "\n"
 
 
@@ -101,7 +106,7 @@ def test_what_the_control_cards_ask_for_reaches_the_solver(tmp_path: Path) -> No
         ("", PLANES),
     )
     problem = particle_problem(model, "deck.mcm")
-    assert problem.cures == Cures(correction=True, artificial_stress=0.3, xsph=0.1)
+    assert problem.cures == Cures(correction=True, xsph=0.1)
     assert (problem.relaxation, problem.h_option) == (0.5, 2)
     assert problem.planes == (Plane(0, -1, SYMMETRY, 0.0),)
     options.apply({"xsph": False, "h_option": 1}, model)
@@ -111,9 +116,13 @@ def test_what_the_control_cards_ask_for_reaches_the_solver(tmp_path: Path) -> No
 
 def test_the_method_beyond_the_deck_is_by_material_or_as_it_is_said(tmp_path: Path) -> None:
     model = _read(tmp_path)
-    assert particle_problem(model, "deck.mcm").cures == Cures(artificial_stress=0.3)
-    assert particle_problem(model, "deck.mcm", original=True).cures == Cures()
-    assert particle_problem(model, "deck.mcm", method=Sph(cures="none")).cures == Cures()
+    assert particle_problem(model, "deck.mcm").cures == Cures()
+    asked = Sph(artificial_stress=0.3)
+    assert particle_problem(model, "deck.mcm", method=asked).cures == Cures(artificial_stress=0.3)
+    assert particle_problem(model, "deck.mcm", method=asked, original=True).cures == Cures()
+    grain = _read(tmp_path, ("    1    3       2.7", "    1    4       2.7"), CAP)
+    assert particle_problem(grain, "deck.mcm").bodies[0].stress_diffusion == 0.1
+    assert particle_problem(grain, "deck.mcm", method=Sph(cures="none")).bodies[0].stress_diffusion == 0.0
     said = of_options({
         "sph.kernel": "wendland_c2", "sph.artificial_stress": 0.1, "sph.stress_diffusion": 0.2,
         "sph.pair_viscosity.alpha": 0.4, "sph.acceleration": [[0, 0, 0, 0], [1, 0, -9.81, 0]],
