@@ -201,6 +201,7 @@ def _not_yet(c: ParticleControl) -> list[tuple[str, str, str]]:
     """What the control cards ask for and this solver does not do yet: field, what it is, what was said."""
     asked = [
         (c.kernel not in (0, 1), "kernel", "a kernel by another number than 1", f"kernel {c.kernel}"),
+        (c.birth_death > 0, "birth_death", "birth and death of particles", f"birth_death {c.birth_death}"),
         (c.friction is not None, "friction", "contact friction", f"friction {c.friction}"),
         (c.fluid_friction is not None, "fluid_friction", "fluid friction", f"friction {c.fluid_friction}"),
     ]  # fmt: skip

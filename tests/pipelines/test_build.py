@@ -37,6 +37,7 @@ steel
        1      0.01       0.0       0.0
        2      0.01       0.0       0.0
 """.format(title="two particles")
+BIRTH = f"{1:10d}{2:10d}\n"
 CAP = (
     "       0.7\n      0.33\n     0.003\n      0.01\n       0.5\n       0.0\n",
     "       0.7       4.0\n       0.3       0.5\n     0.003       0.1\n"
@@ -64,6 +65,7 @@ def test_the_deck_is_computed_as_it_is(tmp_path: Path) -> None:
     [
         ([("   60\n\n", "   60\n       0.3       0.2\n")], "9:8", "contact friction", "friction (0.3, 0.2)"),
         ([("   60\n\n", "   60\n    0    1    0\n       0.3       0.2\n")], "9:10", "contact friction", "friction ("),
+        ([("   60\n\n", "   60\n    1    0    0\n"), ("", BIRTH)], "9:5", "birth and death of particles", "birth_death 1"),
         ([("   60\n\n", "   60\n    0    2    0\n       0.4\n")], "9:10", "fluid friction", "friction 0.4"),
         ([("    1    3       2.7    0", "    1    9       2.7   28"),
           ("       0.5\n       0.0", "       0.5\n       0.0\nwater\n      1e-3       7.0       0.0       0.5")],

@@ -177,6 +177,7 @@ class _Deck:
         options.check("birth_death", 0 <= options["birth_death"] <= 3, "no such birth and death", "0 to 3")
         options.check("plane_particle", options["plane_particle"] >= 0, "plane_particle is negative", "0 or more")
         c.birth_death, c.plane_particle = options["birth_death"], options["plane_particle"]
+        c.places["birth_death"] = options.place("birth_death")
         kind = options["contact_option"]
         c.places |= dict.fromkeys(("friction", "fluid_friction"), options.place("contact_option"))
         options.check(
