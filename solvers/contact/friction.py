@@ -26,6 +26,7 @@ from ..jit import kernel
 ELASTIC = 1e-3  # elastic slip, in units of h, at which the traction would be the normal force
 WEAKENING = 0.01  # slip, in units of h, over which a point at rest comes down to the friction of motion
 DELAY = 10.0  # of friction behind the normal force, in passages of sound through h
+FORGET = 0.1  # of the pace at which the load rises: that at which it is forgotten out of contact
 STICK = 0.5  # the spring's largest stiffness in units of the softer body's own, rho c^2
 DASHPOT = 0.25  # the dashpot beside it in units of the impedance rho c
 

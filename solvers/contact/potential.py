@@ -71,7 +71,7 @@ def _repulsion(law, shape, r2, h_i, h_j, mass_i, mass_j, density_i, density_j, b
     if law.dimension > 2:
         factor *= inverse
     push = -mass_i * mass_j * (law.strength[body_i] + law.strength[body_j]) * f**power * factor * slope
-    return push, push * (2.0 * q2 * iq - power * slope * q2 / (value + TINY))
+    return push, push * (2.0 * q2 * iq - (power + 1.0) * slope * q2 / (value + TINY))
 
 
 @overload(repulsion, jit_options=JIT_OPTIONS)

@@ -1,10 +1,10 @@
 """Friction between bodies: normals, slip, and the traction that each particle's contact can bear.
 
-A particle's normal is the gradient of the colour that is 1 in other bodies and 0 in its own ([T] 5.4.2-3), and twice
-its size times the volume is the surface that the particle has in the contact. Against that surface the mean velocity of
-the other bodies, weighted by the pairs' normal forces N_ij, is its slip. Its traction T_i (`contact.friction`) is
-shared out to the pairs by N_ij: t_ij = - N_ij (T_i/N_i - T_j/N_j)/2, N_i = sum_j N_ij. The halves are those of the two
-sides of the same surface, and t_ij = - t_ji to the last bit.
+A pair's normal is the difference of both points' gradients of a colour that is 1 in other bodies and 0 in their own
+([T] 5.4.2-3), a particle's the mean of its pairs' by their normal forces N_ij; twice the gradient's size times the
+volume is the surface that the particle has in the contact. The mean velocity against the other bodies, by N_ij too, is
+its slip. Its traction T_i (`contact.friction`) is shared out to the pairs by N_ij: t_ij = - N_ij (T_i/N_i - T_j/N_j)/2,
+N_i = sum_j N_ij. The halves are those of the two sides of the same surface, and t_ij = - t_ji to the last bit.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba.extending import overload
 
-from ..contact.friction import ELASTIC, WEAKENING, follow, stick_or_slide, turned_into
+from ..contact.friction import ELASTIC, FORGET, WEAKENING, follow, stick_or_slide, turned_into
 from ..contact.law import JIT_OPTIONS, is_law
 from ..jit import kernel
 from ..threads import barrier, share
@@ -25,7 +25,7 @@ from .smoothing import inverse_root, shape_slope
 
 
 class CoulombPairs(NamedTuple):
-    """(bodies, bodies) each: static and kinetic coefficient; modulus [pressure], impedance, wave speed of the softer."""
+    """(bodies, bodies) each: static and kinetic coefficient; modulus, impedance, wave speed of the softer."""
 
     static: Any
     kinetic: Any
@@ -161,7 +161,7 @@ def _out_of_contact(friction, i, z, dt, arrays):
         last = 3 if z is not None else 2
         own = arrays.material[i]
         slip[:last, i] = 0.0
-        slip[last + 1, i] = follow(slip[last + 1, i], 0.0, dt, friction.wave[own, own], arrays.h[i])
+        slip[last + 1, i] = follow(slip[last + 1, i], 0.0, dt, FORGET * friction.wave[own, own], arrays.h[i])
 
     return coulomb
 
@@ -179,6 +179,9 @@ def resistance(i0, i1, z, shape, law, friction, damping, dt, arrays):
         sy = 0.0
         sz = 0.0
         sums[:] = 0.0
+        nx = 0.0
+        ny = 0.0
+        nz = 0.0
         for k in range(arrays.c_first[i], arrays.c_first[i] + arrays.c_count[i]):
             j = arrays.c_rows[k]
             mean = 0.5 * (arrays.h[i] + arrays.h[j])
@@ -198,9 +201,12 @@ def resistance(i0, i1, z, shape, law, friction, damping, dt, arrays):
                 dw = arrays.w[i] - arrays.w[j]
                 approach -= dw * dz
             push, _, _ = pair_push(law, shape, damping, i, j, r2, approach, dt, arrays)
-            _, _, _, along = pair_normal(i, j, z, dx, dy, dz, arrays)
+            px, py, pz, along = pair_normal(i, j, z, dx, dy, dz, arrays)
             weight = push * along
             force += weight
+            nx += weight * px
+            ny += weight * py
+            nz += weight * pz
             sx += weight * du
             sy += weight * dv
             if z is not None:
@@ -209,9 +215,6 @@ def resistance(i0, i1, z, shape, law, friction, damping, dt, arrays):
         tx = 0.0
         ty = 0.0
         tz = 0.0
-        nx = colour[0, i]
-        ny = colour[1, i]
-        nz = colour[2, i] if z is not None else 0.0
         size = math.sqrt(nx * nx + ny * ny + nz * nz)
         if force > 0.0 and size > 0.0:
             nx /= size
@@ -220,10 +223,13 @@ def resistance(i0, i1, z, shape, law, friction, damping, dt, arrays):
             sx /= force
             sy /= force
             sz /= force
+            surface = colour[0, i] * colour[0, i] + colour[1, i] * colour[1, i]
+            if z is not None:
+                surface += colour[2, i] * colour[2, i]
             along = sx * nx + sy * ny + sz * nz
             tx, ty, tz = resist(
                 friction, i, z, nx, ny, nz, sx - along * nx, sy - along * ny, sz - along * nz, force,
-                2.0 * arrays.volume[i] * size, sums, dt, arrays,
+                2.0 * arrays.volume[i] * math.sqrt(surface), sums, dt, arrays,
             )  # fmt: skip
             tx /= force
             ty /= force

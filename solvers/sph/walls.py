@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..contact.friction import DASHPOT, ELASTIC, STICK, WEAKENING, follow, stick_or_slide
+from ..contact.friction import DASHPOT, ELASTIC, FORGET, STICK, WEAKENING, follow, stick_or_slide
 from ..contact.plane import wall_push
 from ..jit import kernel
 from .across import stable_step
@@ -59,7 +59,7 @@ def wall_force(i0, i1, z, walls, law, damping, slip, heat, dt, cx, arrays):
                 if slip is not None:
                     row = m * (d + 2)
                     slip[row : row + d, i] = 0.0
-                    slip[row + d + 1, i] = follow(slip[row + d + 1, i], 0.0, dt, wave, arrays.h[i])
+                    slip[row + d + 1, i] = follow(slip[row + d + 1, i], 0.0, dt, FORGET * wave, arrays.h[i])
                 continue
             sx = u[i]
             sy = v[i]
