@@ -41,7 +41,7 @@ def potential(shape: Any, dimension: int, strength: Any, exponent: Any, *, origi
 
 def matching_strength(wave_speed: float, density: float) -> float:
     """K that makes the contact about as stiff as a body of this wave speed: its pressure is rho c^2 at r = h."""
-    return 0.5 * wave_speed * wave_speed / density
+    return wave_speed * wave_speed / density
 
 
 @kernel

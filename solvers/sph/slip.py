@@ -1,10 +1,10 @@
 """Friction between bodies: normals, slip, and the traction that each particle's contact can bear.
 
 A pair's normal is the difference of both points' gradients of a colour that is 1 in other bodies and 0 in their own
-([T] 5.4.2-3), a particle's the mean of its pairs' by their normal forces N_ij; twice the gradient's size times the
-volume is the surface that the particle has in the contact. The mean velocity against the other bodies, by N_ij too, is
-its slip. Its traction T_i (`contact.friction`) is shared out to the pairs by N_ij: t_ij = - N_ij (T_i/N_i - T_j/N_j)/2,
-N_i = sum_j N_ij. The halves are those of the two sides of the same surface, and t_ij = - t_ji to the last bit.
+([T] 5.4.2-3), a particle's the mean of its pairs' by their normal forces N_ij. The mean velocity against the other
+bodies, by N_ij too, is its slip; a face of its volume is its surface. Its traction T_i (`contact.friction`) is shared
+out to the pairs by N_ij: t_ij = - N_ij (T_i/N_i - T_j/N_j)/2, N_i = sum_j N_ij. The halves are those of the two sides
+of the same surface, and t_ij = - t_ji to the last bit.
 """
 
 from __future__ import annotations
@@ -171,7 +171,7 @@ def resistance(i0, i1, z, shape, law, friction, damping, dt, arrays):
     """T_i/N_i of a range of particles into `mobilised`, with the normals of all."""
     x, y, u, v = arrays.x, arrays.y, arrays.u, arrays.v
     reach2 = law.reach * law.reach
-    colour, mobilised = arrays.colour, arrays.mobilised
+    mobilised = arrays.mobilised
     sums = np.zeros(5)
     for i in range(i0, i1):
         force = 0.0
@@ -223,13 +223,13 @@ def resistance(i0, i1, z, shape, law, friction, damping, dt, arrays):
             sx /= force
             sy /= force
             sz /= force
-            surface = colour[0, i] * colour[0, i] + colour[1, i] * colour[1, i]
+            surface = math.sqrt(arrays.volume[i])
             if z is not None:
-                surface += colour[2, i] * colour[2, i]
+                surface = arrays.volume[i] ** (2.0 / 3.0)
             along = sx * nx + sy * ny + sz * nz
             tx, ty, tz = resist(
                 friction, i, z, nx, ny, nz, sx - along * nx, sy - along * ny, sz - along * nz, force,
-                2.0 * arrays.volume[i] * math.sqrt(surface), sums, dt, arrays,
+                surface, sums, dt, arrays,
             )  # fmt: skip
             tx /= force
             ty /= force

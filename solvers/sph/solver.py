@@ -574,5 +574,7 @@ class Solver:
             getattr(s, name)[:n] = data[name]
         self.live = int(data["live"])
         self._progress[:] = data["progress"]
+        if self.problem.body_curve is not None:
+            step.body_force_at(self._progress[step.TIME], self._numbers)
         self._start_energy = dict(zip(self._start_energy, np.asarray(data["start_energy"]).tolist(), strict=True))
         self._rebuild(sort=False)
