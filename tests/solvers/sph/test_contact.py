@@ -90,7 +90,7 @@ def test_bodies_collide_part_and_keep_momentum_and_energy(kind: str, extra: dict
     energy = rows[0]["kinetic"]
     assert max(row["contact_energy"] for row in rows) > 0.0
     assert velocity(solver)[0] < -0.05  # 0.1 before
-    assert abs(rows[-1]["contact_energy"]) < 2e-3 * energy  # what it stored it gave back
+    assert abs(rows[-1]["contact_energy"]) < 5e-3 * energy  # what it stored it gave back
     assert rows[-1]["contact_dissipated"] >= -1e-6 * energy
     assert (rows[-1]["contact_dissipated"] > 1e-3 * energy) == bool(extra)
     assert rows[-1]["contact_force_x"] == 0.0
@@ -190,14 +190,14 @@ def test_fluid_friction_drags_by_the_surface_in_contact() -> None:
     v[:n, 0], v[n:, 0] = -0.05, 0.05
     problem = meeting(
         "potential", x=x, v=v, mass=np.full(2 * n, DX**2), h=np.full(2 * n, 0.12), density=np.ones(2 * n),
-        body=np.repeat([0, 1], n), friction=Drag(2.0), contact_by_normals=True,
+        body=np.repeat([0, 1], n), friction=Drag(0.2), contact_by_normals=True,
         body_curve=None,
     )  # fmt: skip
     solver = Solver(problem)
     solver.advance(0.02, 10**6)
     force = (velocity(solver)[0] + 0.05) * n * DX**2 / 0.02
-    assert force == pytest.approx(2.0 * 0.1 * 20 * DX, rel=0.1)
-    assert solver.history()["contact_dissipated"] == pytest.approx(force * 0.1 * 0.02, rel=0.1)
+    assert force == pytest.approx(0.2 * 0.1 * 20 * DX, rel=0.05)  # its reaction on the slip: 2 %
+    assert solver.history()["contact_dissipated"] == pytest.approx(force * 0.1 * 0.02, rel=0.05)
 
 
 @pytest.mark.slow
