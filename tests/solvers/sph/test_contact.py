@@ -15,7 +15,7 @@ from zrno.solvers.contact.plane import Wall
 from zrno.solvers.contact.potential import matching_strength
 from zrno.solvers.errors import Diverged
 from zrno.solvers.materials import Elastic, sound_speed
-from zrno.solvers.sph import Body, Problem, Solver
+from zrno.solvers.sph import Body, Problem, Solver, ghosts
 from zrno.solvers.sph import contact as contact_module
 
 YOUNG = 1000.0
@@ -344,3 +344,59 @@ def test_one_body_has_no_contact_and_two_no_friction_unless_asked() -> None:
 def test_contact_that_makes_no_sense_is_refused(change: dict[str, Any], wrong: str) -> None:
     with pytest.raises(ValueError, match=wrong):
         meeting("potential", **change)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["plane", "potential"])
+def test_a_block_slides_in_space_as_in_the_plane(kind: str) -> None:
+    """Down a slope of 35 degrees, askew to the lattice."""
+    a, way = math.radians(35.0), np.array([0.8, 0.6, 0.0])
+    down = np.array([0.0, 0.0, -1.0])
+    fall = np.array([down, down, math.sin(a) * way + math.cos(a) * down])
+    x = grid((10, 8, 2), (0.0, 0.0, DX / 2.0 if kind == "plane" else 0.19))
+    n = len(x)
+    if kind == "plane":
+        options: dict[str, Any] = {"walls": (Wall((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), FRICTION),), "potential": False}
+    else:
+        x = np.concatenate((x, grid((22, 20, 1), (-0.25, -0.25, 0.0), 0.071)))
+        options = {"friction": FRICTION, "contact_by_normals": True}
+    where = np.repeat([0, 1], (n, len(x) - n))
+    options |= {
+        "x": x, "v": np.zeros_like(x), "mass": np.where(where == 0, DX**3, 0.071**3), "h": np.full(len(x), 0.12),
+        "density": np.ones(len(x)), "body": where, "bodies": tuple(body(k + 1) for k in range(where.max() + 1)),
+        "fixed": np.repeat(where[:, None] == 1, 3, axis=1), "contact_damping": 0.3,
+        "body_curve": (np.array([0.0, 1.5, 2.5]), fall),
+    }  # fmt: skip
+    solver = Solver(meeting("potential", dimension=3, **options))
+    solver.advance(2.5, 10**7)
+    before = velocity(solver)
+    solver.advance(3.1, 10**7)
+    gained = (velocity(solver) - before) / 0.6
+    assert gained @ way == pytest.approx(math.sin(a) - 0.4 * math.cos(a), rel=0.03)
+    assert abs(gained[:2] @ [-0.6, 0.8]) < 0.01
+
+
+@pytest.mark.slow
+def test_half_of_a_symmetric_scene_is_as_good_as_the_whole() -> None:
+    """A block pressed on a wider one, cut by a symmetry plane through both: friction sees the images."""
+    upper, lower = grid((8, 3), (-0.35, 0.19)), grid((14, 3), (-0.65, -0.2))
+    x = np.concatenate((upper, lower))
+    where = np.repeat([0, 1], (len(upper), len(lower)))
+    v = np.zeros_like(x)
+    v[:, 0] = np.where(where == 0, -0.3, 0.3) * x[:, 0]  # one is squeezed, the other stretched
+    v[:, 1] = np.where(where == 0, -0.1, 0.1)
+    states = []
+    for half in (False, True):
+        keep = x[:, 0] > 0.0 if half else np.ones(len(x), bool)
+        n = int(keep.sum())
+        planes = (ghosts.Plane(0, -1, ghosts.SYMMETRY, 0.0),) if half else ()
+        problem = meeting(
+            "potential", x=x[keep], v=v[keep], mass=np.full(n, DX**2), h=np.full(n, 0.12), density=np.ones(n),
+            body=where[keep], id=np.flatnonzero(keep) + 1, planes=planes, **RUBBED,
+        )  # fmt: skip
+        solver = Solver(problem)
+        solver.advance(0.3, 10**6)
+        assert solver.history()["contact_dissipated"] > 0.0
+        frame = solver.frame().particles
+        states.append(frame["velocity"][frame["position"][:, 0] > 0.0])
+    assert np.allclose(*states, atol=1e-8)
