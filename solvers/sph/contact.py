@@ -67,7 +67,7 @@ def contact_of(problem: Problem, shape: Shape) -> Contact:
     bodies = problem.bodies
     wave = np.array([sound_speed(b.law, b.density) for b in bodies])
     density = np.array([b.density for b in bodies])
-    rigid = _rigid(problem) & problem.apart
+    rigid = _rigid(problem) & (problem.apart and not problem.original)
     law: Any = None
     if problem.pinball is not None:
         shear = np.array([float(getattr(b.law, "shear", 0.0)) for b in bodies])
