@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 from numba.extending import overload
 
+from ..jit import kernel
 from .law import JIT_OPTIONS, TINY, is_law, repulsion
 
 STIFF = 20.0  # Kp that makes the contact of lattices with h = 1.2 spacings about as stiff as the bodies
@@ -39,35 +40,37 @@ class PinballImpact(NamedTuple):
     flat: int
 
 
-def _spring(law, shape, r2, h_i, h_j, mass_i, mass_j, density_i, density_j, body_i, body_j, approach, dt):
+@kernel
+def _spring_of(law, h_i, h_j, body_i, body_j, r):
+    """(overlap, Kp F2/overlap) of two balls that touch."""
     reach = 0.5 * (h_i + h_j)
-    if r2 >= reach * reach:
-        return 0.0, 0.0
-    r = math.sqrt(r2)
     overlap = reach - r
     g_i = law.modulus[body_i]
     g_j = law.modulus[body_j]
     stiff = law.factor * g_i * g_j / (g_i + g_j) * math.sqrt(0.5 * h_i * h_j / (h_i + h_j) * overlap)
     for _ in range(law.flat):
         stiff /= reach
+    return overlap, stiff
+
+
+def _spring(law, shape, r2, h_i, h_j, mass_i, mass_j, density_i, density_j, body_i, body_j, approach, dt):
+    if 4.0 * r2 >= (h_i + h_j) ** 2:
+        return 0.0, 0.0
+    r = math.sqrt(r2)
+    overlap, stiff = _spring_of(law, h_i, h_j, body_i, body_j, r)
     return stiff * overlap / (r + TINY), 1.5 * stiff
 
 
 def _impact(law, shape, r2, h_i, h_j, mass_i, mass_j, density_i, density_j, body_i, body_j, approach, dt):
-    reach = 0.5 * (h_i + h_j)
-    if r2 >= reach * reach or (approach <= 0.0 and dt > 0.0):
+    if 4.0 * r2 >= (h_i + h_j) ** 2 or (approach <= 0.0 and dt > 0.0):
         return 0.0, 0.0
     r = math.sqrt(r2)
-    overlap = reach - r
-    g_i = law.modulus[body_i]
-    g_j = law.modulus[body_j]
-    stiff = law.factor * g_i * g_j / (g_i + g_j) * math.sqrt(0.5 * h_i * h_j / (h_i + h_j) * overlap)
+    overlap, stiff = _spring_of(law, h_i, h_j, body_i, body_j, r)
     a = 0.125 * density_i * h_i * h_i * h_i
     b = 0.125 * density_j * h_j * h_j * h_j
     stop = law.factor * a * b / (a + b) * approach / (r + TINY)
     for _ in range(law.flat):
-        stiff /= reach
-        stop /= reach
+        stop /= 0.5 * (h_i + h_j)
     force = stiff * overlap
     if stop < force * dt:
         force = stop / dt
