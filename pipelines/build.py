@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from zrno.pipelines import contact
 from zrno.pipelines.laws import initial_energy, law_of
 from zrno.pipelines.method import Sph
 from zrno.solvers.errors import Unsupported
@@ -53,6 +54,9 @@ def particle_problem(
         _body(model, model.materials[number], control.contact_laws[k] if control.contact else (0.0, 0.0), chosen)
         for k, number in enumerate(numbers)
     ]
+    bodies = contact.with_strengths(bodies, contact.law_of_contact(control, chosen))
+    if (warning := contact.unused(control, chosen)) and warning not in model.warnings:
+        model.warnings.append(warning)
     n = len(particles)
     body = np.searchsorted(numbers, particles.material)
     owned = np.bincount(body, minlength=len(numbers))
@@ -79,7 +83,6 @@ def particle_problem(
         step_option=control.step_option,
         step_factor=control.step_factor or STEP_FACTOR,
         first_step=control.initial_step,
-        potential=control.contact == 1,
         body_force=control.base_acceleration or (0.0, 0.0, 0.0),
         original=original,
         body_curve=_curve(chosen),
@@ -90,6 +93,7 @@ def particle_problem(
         traced=tuple(control.history_particles),
         transducers=_transducers(control, numbers),
         cures=_cures(control, chosen),
+        **contact.options(control, chosen, len(bodies)),
     )
 
 
@@ -123,7 +127,7 @@ def _cures(control: ParticleControl, method: Sph) -> Cures:
     )
 
 
-def _body(model: Model, material: Material, contact: tuple[float, float], method: Sph) -> Body:
+def _body(model: Model, material: Material, repulsion: tuple[float, float], method: Sph) -> Body:
     def given(value: float | None, default: float) -> float:
         return value if value else default
 
@@ -139,8 +143,8 @@ def _body(model: Model, material: Material, contact: tuple[float, float], method
         quadratic=given(material.viscosity_quadratic, QUADRATIC),
         least=given(material.rho_min, LEAST_DENSITY),
         most=given(material.rho_max, MOST_DENSITY),
-        strength=contact[0],
-        exponent=contact[1],
+        strength=repulsion[0],
+        exponent=repulsion[1],
         alpha=pair.alpha if pair else 0.0,
         beta=pair.beta if pair else 0.0,
         density_diffusion=(defaults.density_diffusion(law) if automatic else 0.0) if density is None else density,
@@ -202,7 +206,5 @@ def _not_yet(c: ParticleControl) -> list[tuple[str, str, str]]:
     asked = [
         (c.kernel not in (0, 1), "kernel", "a kernel by another number than 1", f"kernel {c.kernel}"),
         (c.birth_death > 0, "birth_death", "birth and death of particles", f"birth_death {c.birth_death}"),
-        (c.friction is not None, "friction", "contact friction", f"friction {c.friction}"),
-        (c.fluid_friction is not None, "fluid_friction", "fluid friction", f"friction {c.fluid_friction}"),
     ]  # fmt: skip
     return [(field, what, said) for wanted, field, what, said in asked if wanted]

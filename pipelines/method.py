@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, ValidationError
 
-from zrno.pipelines.sections import NotNegative, Section
+from zrno.pipelines.sections import Friction, NotNegative, Positive, Section
 from zrno.translators.text import Fault, InputError
 
 Part = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
@@ -19,6 +19,28 @@ class PairViscosity(Section):
 
     alpha: NotNegative = 0.0
     beta: NotNegative = 0.0
+
+
+class Contact(Section):
+    """How bodies meet, where it is not as the deck says.
+
+    law: potential (the deck's strengths, or such as suit the bodies) or pinball, of stiffness `pinball`; damping: part
+    of critical; by_normals: forces along the normals of the contact, for grain that slides on particles.
+    """
+
+    law: Literal["deck", "kernel", "potential", "pinball"] = "deck"
+    pinball: Positive = 20.0
+    damping: Part = 0.0
+    by_normals: bool = False
+    friction: Friction | None = None
+
+
+class Wall(Section):
+    """A rigid plane that particles cannot pass: a point of it, its normal towards them, its friction."""
+
+    position: tuple[float, float, float]
+    normal: tuple[float, float, float]
+    friction: Friction | None = None
 
 
 class Sph(Section):
@@ -35,6 +57,8 @@ class Sph(Section):
     stress_diffusion: Part | None = None
     xsph: Part | None = None
     pair_viscosity: PairViscosity | None = None
+    contact: Contact = Field(default_factory=Contact)
+    walls: list[Wall] = Field(default_factory=list)
     acceleration: Annotated[list[Row], Field(min_length=2)] | None = None
 
 

@@ -8,11 +8,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, PrivateAttr, ValidationError, ValidationInfo, field_validator
+from pydantic import BeforeValidator, Field, PrivateAttr, ValidationError, field_validator
 from pydantic_core import ErrorDetails
 
 from zrno.pipelines.method import Sph
-from zrno.pipelines.sections import NotNegative, Positive, Section, wrong
+from zrno.pipelines.sections import Friction, Positive, Section, wrong
 from zrno.pipelines.study_scene import Study
 from zrno.pipelines.units import SYSTEMS, Units
 from zrno.pipelines.view import LEAST_PIXELS, MOST_PIXELS, VIEWS
@@ -55,21 +55,6 @@ class Mesh(Section):
     part: Annotated[list[str | int], BeforeValidator(_as_list)] = Field(default_factory=list)
     dialect: Literal["2.07", "2019-08", "2019-10"] | None = None
     numbers: dict[str, float] = Field(default_factory=dict)
-
-
-class Friction(Section):
-    """Coulomb friction: coefficients at rest and in motion."""
-
-    kinetic: NotNegative
-    static: NotNegative
-
-    @field_validator("static")
-    @classmethod
-    def _at_least_kinetic(cls, value: float, info: ValidationInfo) -> float:
-        kinetic = info.data.get("kinetic", 0.0)
-        if value < kinetic:
-            raise wrong("must be >= kinetic", f"at least {kinetic:g}")
-        return value
 
 
 class Coupling(Section):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, field_validator
 from pydantic_core import PydanticCustomError
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
@@ -20,3 +20,18 @@ class Section(BaseModel):
 def wrong(message: str, expected: str) -> PydanticCustomError:
     """A fault of a value, for a validator to raise."""
     return PydanticCustomError("scene", "{what}", {"what": message, "expected": expected})
+
+
+class Friction(Section):
+    """Coulomb friction: coefficients at rest and in motion."""
+
+    kinetic: NotNegative
+    static: NotNegative
+
+    @field_validator("static")
+    @classmethod
+    def _at_least_kinetic(cls, value: float, info: ValidationInfo) -> float:
+        kinetic = info.data.get("kinetic", 0.0)
+        if value < kinetic:
+            raise wrong("must be >= kinetic", f"at least {kinetic:g}")
+        return value

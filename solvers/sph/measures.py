@@ -52,23 +52,27 @@ def particles(p: Problem, s: State, velocity: Floats, live: int) -> dict[str, Fl
 
 
 def energies(p: Problem, s: State, velocity: Floats) -> dict[str, float]:
-    """Kinetic, internal (with the dissipated), dissipated, external work, stored by contact and artificial stress."""
+    """Kinetic, internal (with the dissipated), dissipated, external work, stored by contact and artificial stress, and
+    what friction and dashpots of the contact took.
+    """
     n = s.n
     mass = s.rows("mass")[0, :n]
     moved = s.rows("x")[:, :n] - s.rows("x_start")[:, :n]
     contact, artificial, body = s.rows("contact_work"), s.rows("artificial_work"), s.rows("body_work")
+    heat = float(np.sum(s.rows("contact_heat")[:, :n]))
     external = float(np.sum(mass * (np.array(p.body_force[: s.d]) @ moved)))
     return {
         "kinetic": 0.5 * float(np.sum(mass * np.sum(velocity**2, axis=0))),
         "internal": float(np.sum(mass * s.rows("energy")[0, :n])),
         "dissipated": float(np.sum(mass * s.rows("dissipated")[0, :n])),
         "external_work": float(np.sum(body[0, :n])) if len(body) else external,
-        "contact_energy": -float(np.sum(contact[0, :n])) if len(contact) else 0.0,
+        "contact_energy": -float(np.sum(contact[0, :n])) - heat if len(contact) else 0.0,
         "artificial_energy": -float(np.sum(artificial[0, :n])) if len(artificial) else 0.0,
+        "contact_dissipated": heat,
     }
 
 
 def total(energies: dict[str, float]) -> float:
     """What stays constant."""
-    stored = energies["contact_energy"] + energies["artificial_energy"]
+    stored = energies["contact_energy"] + energies["contact_dissipated"] + energies["artificial_energy"]
     return energies["kinetic"] + energies["internal"] + stored - energies["external_work"]

@@ -314,7 +314,7 @@ def critical_step(i0, i1, z, wave, numbers, arrays):
     least = np.inf
     for i in range(i0, i1):
         c = numbers.wave[arrays.material[i]]
-        if wave is not None:
+        if wave is not None and c > 0.0:
             c = wave[i]
         speed2 = arrays.u[i] ** 2 + arrays.v[i] ** 2
         if z is not None:

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from ..contact.friction import Coulomb, Drag
+from ..contact.plane import Wall
 from ..materials import Law
 from .ghosts import PERIODIC, Plane
 from .smoothing import shape_of
@@ -67,8 +69,13 @@ class Problem:
     body_force: acceleration (3,); body_curve: or times (k,) and accelerations (k, 3), linear between them. original: do
     as the original program does where that differs. kernel: a name of `smoothing.NAMES`. h_option: 0 h is constant, 1
     dh/dt = h div v / d, 2 h = h0 (rho0/rho)^(1/d). relaxation: factor of all velocities in each step (dynamic
-    relaxation), 1 for none. planes: of the boundary, see `ghosts`. traced: ids of
-    particles, transducers: places and indices of bodies, whose state each row of the history has. cures: see `Cures`.
+    relaxation), 1 for none. planes: of the boundary, see `ghosts`. traced: ids of particles, transducers: places and
+    indices of bodies, whose state each row of the history has. cures: see `Cures`. pinball: bodies repel by balls of
+    this factor Kp (`contact.pinball`, STIFF is a good one), pinball_as_printed: by the rule as printed.
+    contact_damping: fraction of a pair's critical damping, of contact and walls. friction: of bodies that repel;
+    friction_between: of two bodies (indices) where that is another. walls: rigid planes. contact_by_normals: forces
+    between bodies act along the normals of the contact: particles then slide over a coarse wall as over a smooth one
+    (their centres turn nothing exactly).
     """
 
     dimension: int
@@ -99,6 +106,13 @@ class Problem:
     transducers: tuple[tuple[float, float, float, int], ...] = ()
     cures: Cures = field(default_factory=lambda: Cures())
     title: str = field(default="")
+    pinball: float | None = None
+    pinball_as_printed: bool = False
+    contact_damping: float = 0.0
+    friction: Coulomb | Drag | None = None
+    friction_between: tuple[tuple[int, int, Coulomb], ...] = ()
+    walls: tuple[Wall, ...] = ()
+    contact_by_normals: bool = False
 
     def __post_init__(self) -> None:
         n = len(self.x)
@@ -123,5 +137,20 @@ class Problem:
                 raise ValueError(f"every particle needs a finite {name} of three components")
             if np.any(vectors[:, self.dimension :]):
                 raise ValueError(f"a {self.dimension}D problem has a {name} outside its {self.dimension} dimension(s)")
+        if self.pinball is not None and (self.potential or not self.pinball > 0.0):
+            raise ValueError(f"the pinball factor {self.pinball!r} must be positive, and excludes the potential")
+        if (self.friction is not None or self.friction_between) and not self.apart:
+            raise ValueError("friction between bodies needs contact by the potential or by pinballs")
+        if isinstance(self.friction, Drag) and self.friction_between:
+            raise ValueError("fluid friction is the same between all bodies")
+        if self.contact_by_normals and not self.apart:
+            raise ValueError("contact by normals needs the potential or pinballs")
+        if not 0.0 <= self.contact_damping <= 1.0:
+            raise ValueError(f"contact damping {self.contact_damping!r} must lie between 0 and 1")
         if self.body.min() < 0 or self.body.max() >= len(self.bodies):
             raise ValueError("a particle's body is not among the bodies")
+
+    @property
+    def apart(self) -> bool:
+        """Whether bodies repel each other; otherwise they are ordinary neighbours."""
+        return self.potential or self.pinball is not None

@@ -20,6 +20,7 @@ from ..materials import PLASTIC_STRAIN, constant_wave, sound_speed, state_rows
 from ..neighbours import FAR, Cells, NeighbourList
 from ..threads import available, run
 from . import across, ghosts, measures, probes, step
+from .contact import contact_of, culprit
 from .problem import STEP_OPTIONS, Problem
 from .smoothing import normaliser, shape_of, value_at
 from .state import Arrays, Numbers, Rows, State
@@ -27,6 +28,7 @@ from .state import Arrays, Numbers, Rows, State
 SKIN = 0.25  # of the largest h: the list's spare radius
 IMAGE = 0.25  # of h: a particle nearer to its image than this shortens the step no further
 CHECKED = 50  # steps between looks at the energy balance
+STORED = ("contact_energy", "contact_dissipated", "artificial_energy")  # columns that stand at the end
 CREATED = 3.0  # so many times the energy put in cannot come out of a stable run
 SMALL = 2000  # fewer particles run on one thread: a parallel region costs more than it saves
 
@@ -45,6 +47,7 @@ class Solver:
         self.threads = 1 if n < SMALL else max(1, min(threads or available(), available()))
         self._shape = shape_of(problem.kernel, problem.dimension)
         self._mixed = self._is_mixed()
+        self._contact = contact_of(problem, self._shape)
         self._uniform_h = bool(np.all(problem.h == problem.h[0])) and problem.h_option == 0
         self._uniform_mass = bool(np.all(problem.mass == problem.mass[0]))
         self._skin = skin * float(problem.h.max()) * 0.5 * self._shape.support
@@ -52,7 +55,7 @@ class Solver:
         self._heats = any(b.alpha or b.beta for b in problem.bodies)
         has = Rows(
             state=max(state_rows(b.law) for b in problem.bodies),
-            contact=problem.potential,
+            contact=problem.apart or bool(problem.walls),
             correction=cures.correction,
             artificial=cures.artificial_stress > 0.0,
             heat=self._heats,
@@ -62,6 +65,10 @@ class Solver:
             changing_h=problem.h_option != 0,
             body_work=problem.body_curve is not None,
             wave=not (problem.original or all(constant_wave(b.law) for b in problem.bodies)),
+            contact_heat=self._contact.heats,
+            slip=self._contact.friction is not None,
+            normals=self._contact.normals is not None,
+            wall_slip=self._contact.wall_slip,
         )
         self._has = has
         self._state = State(n, problem.dimension, has)
@@ -94,7 +101,7 @@ class Solver:
         The sums are then to suit that (see `pairs`).
         """
         p = self.problem
-        return len({b.density for b in p.bodies}) > 1 and not p.potential and not p.original
+        return len({b.density for b in p.bodies}) > 1 and not p.apart and not p.original
 
     def _make_numbers(self) -> Numbers:
         p = self.problem
@@ -103,6 +110,7 @@ class Solver:
         times, values = p.body_curve or (np.zeros(2), np.zeros((2, 3)))
         spacing = float(np.median((p.mass / p.density) ** (1.0 / p.dimension) / p.h))
         wave = np.array([sound_speed(b.law, b.density, self._first_energy(k)) for k, b in enumerate(p.bodies)])
+        wave = np.where(self._contact.rigid, 0.0, wave)
         viscous = np.array([(b.linear, b.quadratic, b.least, b.most) for b in p.bodies])
         scale = normal / h ** (p.dimension + 2) if self._uniform_h else normal
         return Numbers(
@@ -127,8 +135,6 @@ class Solver:
             step_factor=p.step_factor,
             original=p.original,
             mixed=self._mixed,
-            strength=np.array([b.strength for b in p.bodies]),
-            exponent=np.array([b.exponent for b in p.bodies]),
         )
 
     def _first_energy(self, body: int) -> float:
@@ -177,7 +183,7 @@ class Solver:
         return (
             f"{p.dimension}D, {p.kernel} kernel, {'one' if self._uniform_h else 'variable'} h, "
             f"{'one' if self._uniform_mass else 'variable'} mass, laws: {laws}, "
-            f"contact: {'potential' if p.potential else 'kernel' if len(p.bodies) > 1 else 'none'}, "
+            f"contact: {self._contact.name(len(p.bodies))}, "
             f"step: {STEP_OPTIONS[p.step_option]}, {self.threads} thread(s)"
             + "".join(f", {term}" for term in self._terms())
         )
@@ -263,7 +269,7 @@ class Solver:
                 a.nearest if p.step_option == 2 else None,
                 True if p.dimension == 1 else None,
                 a.cx,
-                True if p.potential else None,
+                self._contact.law,
                 True if self._mixed else None,
                 a.correction if has.correction else None,
                 a.bx,
@@ -281,6 +287,13 @@ class Solver:
                 None if images is None else images.sign,
                 None if images is None else images.shift,
                 self._mirrors,
+                self._contact.friction,
+                self._contact.damping,
+                self._contact.normals,
+                self._contact.by_normals,
+                self._contact.walls,
+                a.wall_slip if has.wall_slip else None,
+                a.contact_heat,
                 a,
                 self._numbers,
                 self._laws,
@@ -346,6 +359,11 @@ class Solver:
             c_count=self._others.count,
             c_rows=self._others.rows,
             reduced=self._reduced,
+            contact_heat=s.row("contact_heat"),
+            slip=s.rows("slip"),
+            wall_slip=s.rows("wall_slip"),
+            colour=s.rows("colour"),
+            mobilised=s.rows("mobilised"),
         )
 
     def _rebuild(self, *, sort: bool = True) -> None:
@@ -375,9 +393,11 @@ class Solver:
         if not self._uniform_h:  # the pair's radius is half the support of both
             h = s.rows("h_list" if self._has.changing_h else "h")[0] * (0.5 * self._shape.support)
             radius *= 0.5
-        group = s.material if self.problem.potential else None
-        wanted = [(self._list, False)] + ([(self._others, True)] if self.problem.potential else [])
+        group = s.material if self.problem.apart else None
+        wanted = [(self._list, False)] + ([(self._others, True)] if self.problem.apart else [])
+        of_kernel = radius, h
         for neighbours, other in wanted:
+            radius, h = self._contact.pairs(*of_kernel, self._shape.support) if other else of_kernel
             if self._mirrored:
                 neighbours.build_mapped(
                     n, len(self._images), self.n, x, y, z, dummy=s.dummy, radius=radius, skin=self._skin, h=h,
@@ -453,7 +473,10 @@ class Solver:
         p, s, n = self.problem, self._state, self.n
         cause = "the time step collapsed"
         item = 0
-        if p.step_option == 2:
+        if p.apart and (found := culprit(self._arrays(), p.dimension, self.live)):
+            item, why = found
+            cause += f": {why}"
+        elif p.step_option == 2:
             i = int(np.argmin(s.rows("nearest")[0, :n]))
             item = int(s.id[i])
             distance = math.sqrt(s.rows("nearest")[0, i])
@@ -487,10 +510,10 @@ class Solver:
         s, n = self._state, self.n
         force = np.zeros(3)
         a = self._arrays()
-        if self.problem.potential:
+        if self._has.contact:
             first = s.material[:n] == 0
             force[: s.d] = (s.rows("c")[:, :n] * s.rows("mass")[0, :n] * first).sum(axis=1)
-        elif len(self.problem.bodies) > 1:
+        if len(self.problem.bodies) > 1 and not self.problem.apart:
             across.interface_force(
                 0, self.live, a.first, a.count, a.rows, self._shape, a.x, a.y, a.z, a.s,
                 a.volume if self._mixed else a.mass, a.h,
@@ -502,11 +525,12 @@ class Solver:
         """One row of history.csv: energies, momentum, the contact force on the first material.
 
         `internal` is elastic and dissipated energy together, `dissipated` the part that plastic flow and viscosity
-        took; kinetic + internal + contact_energy + artificial_energy - external_work stays constant.
+        took; kinetic + internal + contact_energy + contact_dissipated + artificial_energy - external_work stays
+        constant.
         """
         s, n = self._state, self.n
         energies = self._energies()
-        stored = {name: energies.pop(name) for name in ("contact_energy", "artificial_energy")}
+        stored = {name: energies.pop(name) for name in STORED}
         momentum = np.zeros(3)
         momentum[: s.d] = (self._velocity() * s.rows("mass")[0, :n]).sum(axis=1)
         force = self._contact_force()
@@ -546,7 +570,7 @@ class Solver:
         scale = max(start["kinetic"], now["kinetic"], abs(now["internal"]), abs(now["external_work"]), 1e-300)
         return {
             "initial": start["kinetic"] + start["internal"],
-            "final": now["kinetic"] + now["internal"] + now["contact_energy"] + now["artificial_energy"],
+            "final": measures.total(now) + now["external_work"],
             "kinetic": now["kinetic"],
             "internal": now["internal"],
             "external_work": now["external_work"],
@@ -581,5 +605,7 @@ class Solver:
             getattr(s, name)[:n] = data[name]
         self.live = int(data["live"])
         self._progress[:] = data["progress"]
+        if self.problem.body_curve is not None:
+            step.body_force_at(self._progress[step.TIME], self._numbers)
         self._start_energy = dict(zip(self._start_energy, np.asarray(data["start_energy"]).tolist(), strict=True))
         self._rebuild(sort=False)

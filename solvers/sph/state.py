@@ -25,7 +25,10 @@ class Arrays(NamedTuple):
     acceleration by artificial stress, artificial_work: its work on a particle; heat: power per mass of pair viscosity;
     density_rate, stress_rate: of diffusion; smoothed: velocities of XSPH; body_work: of a body force that changes;
     wave: speed now, where a law's changes; id, material, fixed (bits x y z): integers; first, count, rows: the
-    neighbour list; c_first, c_count, c_rows: the list of other bodies; reduced: (threads, .) what each thread found.
+    neighbour list; c_first, c_count, c_rows: the list of other bodies; reduced: (threads, .) what each thread found;
+    contact_heat: energy that friction and dashpots of the contact took on a particle; slip: elastic slip, how far it
+    slid, the load of friction (d + 2, m); wall_slip: the same for each wall; colour: normal to other bodies, mobilised:
+    traction by normal force, (d, m) each (see `slip`).
     """
 
     x: Any
@@ -82,6 +85,11 @@ class Arrays(NamedTuple):
     c_count: Any
     c_rows: Any
     reduced: Any
+    contact_heat: Any
+    slip: Any
+    wall_slip: Any
+    colour: Any
+    mobilised: Any
 
 
 class Numbers(NamedTuple):
@@ -89,7 +97,7 @@ class Numbers(NamedTuple):
 
     mixed: bodies of different density are neighbours. scale, force_scale: see `pairs`, the latter times the mass where
     all are equal; normal: a_d. viscous: (bodies, 4) linear and quadratic coefficient, density limits; wave:
-    (bodies,) speeds; strength, exponent: (bodies,) of the contact. body: (3,) acceleration now, by the table
+    (bodies,) speeds, 0 of rigid ones. body: (3,) acceleration now, by the table
     body_times (k,), body_values (k, 3). h_option: as the deck's. relaxation: factor of the velocities in each step.
     pair_viscosity: (bodies, 2) alpha and beta; density_diffusion, stress_diffusion: (bodies,)
     factors; inverse_w: 1/W at the particles' spacing; least_distance: in h, that counts
@@ -117,8 +125,6 @@ class Numbers(NamedTuple):
     step_factor: float
     original: bool
     mixed: bool
-    strength: Any
-    exponent: Any
 
 
 @kernel
@@ -137,7 +143,8 @@ class Rows:
     """Which optional rows a run has.
 
     state: of the laws; the others say whether: contact, correction, artificial stress, pair viscosity (heat), density
-    and stress diffusion, xsph, a changing h, a changing body force, a changing wave speed.
+    and stress diffusion, xsph, a changing h, a changing body force, a changing wave speed, heat of contact, slip
+    between bodies, normals; wall_slip: walls with friction.
     """
 
     state: int = 0
@@ -151,6 +158,10 @@ class Rows:
     changing_h: bool = False
     body_work: bool = False
     wave: bool = False
+    contact_heat: bool = False
+    slip: bool = False
+    normals: bool = False
+    wall_slip: int = 0
 
 
 class State:
@@ -170,12 +181,12 @@ class State:
             "density": 1, "volume": 1, "mass": 1, "h": 1, "energy": 1, "dissipated": 1, "viscosity": 1,
             "contact_work": int(has.contact), "artificial_work": int(has.artificial), "heat": int(has.heat),
             "h_start": int(has.changing_h), "h_list": int(has.changing_h), "body_work": int(has.body_work),
-            "wave": int(has.wave),
-            "b": d if has.artificial else 0, "state": has.state,
+            "wave": int(has.wave), "b": d if has.artificial else 0, "contact_heat": int(has.contact_heat),
+            "slip": (d + 2) * has.slip, "wall_slip": (d + 2) * has.wall_slip, "state": has.state,
             "gradient": d * d, "s": (d * d if has.correction else 6 if solid else 3), "nearest": 1,
             "c": d if has.contact else 0, "correction": (6 if solid else 3) if has.correction else 0,
             "density_rate": int(has.density_rate), "stress_rate": six if has.stress_rate else 0,
-            "smoothed": d if has.xsph else 0,
+            "smoothed": d if has.xsph else 0, "colour": d * has.normals, "mobilised": d * has.slip,
         }  # fmt: skip
         self.slices: dict[str, slice] = {}
         at = 0

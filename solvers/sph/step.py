@@ -15,7 +15,7 @@ import numpy as np
 
 from ..jit import kernel
 from ..threads import barrier, claim, share
-from . import across, cures, ghosts, pairs
+from . import across, cures, ghosts, pairs, slip, walls
 from .particle import critical_step, drift, each_law, half_work, kick
 
 # entries of `progress`, the loop's own memory
@@ -54,8 +54,9 @@ def strain(i0, i1, shape, solid, h, line, correction, density_rate, stress_rate,
 
 
 @kernel
-def force(i0, i1, shape, z, h, mass, nearest, line, cx, potential, mixed, correction, bx, artificial, heat, body_work,
-          wave, dt, arrays, numbers):  # fmt: skip
+def force(i0, i1, shape, z, h, mass, nearest, line, cx, contact, mixed, correction, bx, artificial, heat, body_work,
+          wave, friction, damping, normals, by_normals, planes, wall_slip, contact_heat, dt, arrays,
+          numbers):  # fmt: skip
     """Accelerations of a range of particles; returns their critical step."""
     if mixed is not None:
         weight = arrays.volume
@@ -72,14 +73,19 @@ def force(i0, i1, shape, z, h, mass, nearest, line, cx, potential, mixed, correc
     )  # fmt: skip
     if heat is not None:
         cures.pair_viscosity(i0, i1, z, shape, arrays, numbers, heat)
-    if potential is not None:
-        across.contact_acceleration(
-            i0, i1, arrays.c_first, arrays.c_count, arrays.c_rows, shape, arrays.x, arrays.y, z, arrays.mass, arrays.h,
-            -(numbers.dimension + 2.0), numbers.normal, arrays.material, numbers.strength, numbers.exponent,
-            numbers.original, arrays.ax, arrays.ay, arrays.az, cx, arrays.cy, arrays.cz,
-        )  # fmt: skip
+    least = np.inf
+    if contact is not None:
+        least = across.contact_force(
+            i0, i1, z, shape, contact, friction, damping, normals, by_normals, dt, cx, contact_heat, arrays, numbers
+        )
+    if planes is not None:
+        least = min(
+            least, walls.wall_force(i0, i1, z, planes, contact, damping, wall_slip, contact_heat, dt, cx, arrays)
+        )
     half_work(i0, i1, z, cx, bx, body_work, dt, arrays, numbers)
-    return critical_step(i0, i1, z, wave, numbers, arrays)
+    if numbers.original:
+        least = np.inf
+    return min(least, critical_step(i0, i1, z, wave, numbers, arrays))
 
 
 @kernel
@@ -95,9 +101,10 @@ def body_force_at(time, numbers):
 
 @kernel
 def advance(
-    thread, threads, sync, n, offset, shape, solid, z, h, mass, nearest, line, cx, potential, mixed, correction, bx,
+    thread, threads, sync, n, offset, shape, solid, z, h, mass, nearest, line, cx, contact, mixed, correction, bx,
     artificial, h_list, h_start, density_rate, stress_rate, heat, smoothed, smoothing, body_work, wave,
-    image_source, image_sign, image_shift, mirrors, arrays, numbers, laws, progress, until, pause, steps, reach2,
+    image_source, image_sign, image_shift, mirrors, friction, damping, normals, by_normals, planes, wall_slip,
+    contact_heat, arrays, numbers, laws, progress, until, pause, steps, reach2,
 ):  # fmt: skip
     """Take up to `steps` steps towards `until`, each thread for its own range; returns why it stopped.
 
@@ -149,12 +156,18 @@ def advance(
                 body_force_at(time, numbers)
             if body_work is not None:
                 barrier(sync, threads)
+            if normals is not None:
+                slip.phase(
+                    thread, threads, sync, n, offset, z, shape, contact, friction, damping, last, image_source,
+                    image_sign, arrays, numbers,
+                )  # fmt: skip
             least = np.inf
             c = claim(sync, taken)
             while c < chunks:
                 part = force(
-                    c * chunk, min(n, (c + 1) * chunk), shape, z, h, mass, nearest, line, cx, potential, mixed,
-                    correction, bx, artificial, heat, body_work, wave, last, arrays, numbers,
+                    c * chunk, min(n, (c + 1) * chunk), shape, z, h, mass, nearest, line, cx, contact, mixed,
+                    correction, bx, artificial, heat, body_work, wave, friction, damping, normals, by_normals,
+                    planes, wall_slip, contact_heat, last, arrays, numbers,
                 )  # fmt: skip
                 least = min(least, part)
                 c = claim(sync, taken)

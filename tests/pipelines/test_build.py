@@ -8,7 +8,10 @@ import pytest
 
 from zrno.pipelines import options
 from zrno.pipelines.build import particle_problem, refusals
-from zrno.pipelines.method import Sph, of_options
+from zrno.pipelines.method import Contact, Sph, Wall, of_options
+from zrno.pipelines.sections import Friction
+from zrno.solvers.contact import plane
+from zrno.solvers.contact.friction import Coulomb
 from zrno.solvers.sph import Cures, Plane
 from zrno.solvers.sph.ghosts import SYMMETRY
 from zrno.translators import InputError, Model, read
@@ -37,6 +40,10 @@ steel
        1      0.01       0.0       0.0
        2      0.01       0.0       0.0
 """.format(title="two particles")
+MATERIAL_2 = DECK[DECK.index("    1    3       2.7") : DECK.index("       1    0  ")].replace(
+    "    1    3", "    2    3", 1
+)
+FLOOR = Wall(position=(0.0, -1.0, 0.0), normal=(0.0, 1.0, 0.0), friction=Friction(static=0.4, kinetic=0.3))
 BIRTH = f"{1:10d}{2:10d}\n"
 CAP = (
     "       0.7\n      0.33\n     0.003\n      0.01\n       0.5\n       0.0\n",
@@ -44,6 +51,16 @@ CAP = (
     "       0.1       0.0\n       0.0      0.01\n       0.0       1.0\n",
 )
 PLANES = f"{1:10d}{0:10d}{0:10d}{0:10d}{0:10d}{0:10d}\n" + f"{0.0:10}" * 6 + "\n"
+
+
+TWO = (
+    DECK.replace("    2    0         1         2", "    2    0         2         2")
+    .replace("   60\n\n", "   60\n       0.3       0.2\n")
+    .replace("    0    2    0    0    0    0    0    0", "    1    2    0    0    0    0    0    0")
+    .replace("       1    0  ", MATERIAL_2 + "       1    0  ")
+    .replace("0.1                 0.0      1", "0.1                 0.0      2")
+    + "   -1    0\n      10.0       2.0\n      10.0       2.0\n"
+)
 
 
 def _read(folder: Path, *changes: tuple[str, str]) -> Model:
@@ -63,10 +80,6 @@ def test_the_deck_is_computed_as_it_is(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "place", "what", "said"),
     [
-        ([("   60\n\n", "   60\n       0.3       0.2\n")], "9:8", "contact friction", "friction (0.3, 0.2)"),
-        ([("   60\n\n", "   60\n    0    1    0\n       0.3       0.2\n")], "9:10", "contact friction", "friction ("),
-        ([("   60\n\n", "   60\n    1    0    0\n"), ("", BIRTH)], "9:5", "birth and death of particles", "birth_death 1"),
-        ([("   60\n\n", "   60\n    0    2    0\n       0.4\n")], "9:10", "fluid friction", "friction 0.4"),
         ([("    1    3       2.7    0", "    1    9       2.7   28"),
           ("       0.5\n       0.0", "       0.5\n       0.0\nwater\n      1e-3       7.0       0.0       0.5")],
          "10:1", "material 1: an initial relative volume V0 of 0.5", "expected a deck without it"),
@@ -136,6 +149,33 @@ def test_the_method_beyond_the_deck_is_by_material_or_as_it_is_said(tmp_path: Pa
     assert problem.body_curve[1][1].tolist() == [0.0, -9.81, 0.0]
 
 
+CONTACT = (("    0    2    0    0", "    1    2    0    0"), ("", "   -1    0\n      10.0       2.0\n"))
+
+
+def test_the_friction_of_a_deck_needs_bodies_that_repel(tmp_path: Path) -> None:
+    card = ("   60\n\n", "   60\n       0.3       0.2\n")
+    model = _read(tmp_path, card)
+    assert particle_problem(model, "deck.mcm").friction is None
+    assert model.warnings[-1].startswith("the friction of card 7 does nothing")
+    pinball = particle_problem(model, "deck.mcm", method=Sph(contact=Contact(law="pinball", pinball=2.0)))
+    assert (pinball.pinball, pinball.potential, pinball.friction) == (2.0, False, None)  # one body meets nobody
+    repelling = particle_problem(_read(tmp_path, card, *CONTACT), "deck.mcm")
+    assert repelling.potential
+    assert repelling.bodies[0].strength == 10.0
+
+
+def test_two_bodies_have_the_friction_that_deck_or_scene_says(tmp_path: Path) -> None:
+    (tmp_path / "two.mcm").write_text(TWO)
+    model = read(tmp_path / "two.mcm")
+    assert particle_problem(model, "two.mcm").friction == Coulomb(0.3, 0.2)
+    said = Sph(contact=Contact(law="potential", friction=Friction(static=0.6, kinetic=0.5)), walls=[FLOOR])
+    problem = particle_problem(model, "two.mcm", method=said)
+    assert problem.friction == Coulomb(0.6, 0.5)
+    assert problem.walls == (plane.Wall((0.0, -1.0, 0.0), (0.0, 1.0, 0.0), Coulomb(0.4, 0.3)),)
+    kernel = particle_problem(model, "two.mcm", method=Sph(contact=Contact(law="kernel")))
+    assert (kernel.potential, kernel.friction) == (False, None)
+
+
 @pytest.mark.parametrize(
     ("key", "value", "message"),
     [
@@ -151,9 +191,9 @@ def test_a_method_that_there_is_not_is_bad_input(key: str, value: object, messag
 
 
 def test_all_refusals_are_said_and_a_mesh_is_no_deck(tmp_path: Path) -> None:
-    model = _read(tmp_path, ("   60\n\n", "   60\n    0    2    0\n       0.4\n"), ("      0.33", "      0.55"))
+    model = _read(tmp_path, ("   60\n\n", "   60\n    1    0    0\n"), ("      0.33", "      0.55"), ("", BIRTH))
     with pytest.raises(InputError) as caught:
         particle_problem(model, "deck.mcm")
-    assert [(fault.line, fault.column) for fault in caught.value.faults] == [(9, 10), (11, 1)]
+    assert [(fault.line, fault.column) for fault in caught.value.faults] == [(9, 5), (10, 1)]
     with pytest.raises(InputError, match=r"plate\.msh:1:1: error: not a particle deck \(msh\)"):
         particle_problem(Model(format="msh"), "plate.msh")
