@@ -28,7 +28,12 @@ CONTROL = {
     "h_option": "h_option",
 }
 # Settings that it holds in another form.
-_OTHER_CONTROL = {"xsph": "velocity_option", "gravity": "base_acceleration", "friction": "friction"}
+_OTHER_CONTROL = {
+    "xsph": "velocity_option",
+    "gravity": "base_acceleration",
+    "friction": "friction",
+    "birth_death": "birth_death",
+}
 
 
 @dataclass(slots=True)

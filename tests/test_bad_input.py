@@ -171,7 +171,7 @@ def test_a_missing_file_and_a_folder(folder: Path, refused: Callable[..., str]) 
         (["--set", "end_time"], "--set:1:1: error: not a key and its value"),
         (["--set", "compat=new"], "--set:1:8: error: compat has a wrong value (new)"),
         (["--set", "output.every=1"], "--set:1:1: error: output.every is for scenes"),
-        (["--set", "h_option=1"], "--set:1:10: error: a smoothing length that changes is not computed yet"),
+        (["--set", "h_option=3"], "--set:1:10: error: h_option is not what it should be (3)"),
         (["--set", "end_time=soon"], "--set:1:10: error: end_time is not what it should be (soon)"),
         (["--set", "materials.steel.E=5"], "--set:1:19: error: materials.steel.E is for decks that a scene makes"),
         (["--until", "-1"], "--until:1:1: error: the run cannot end before it starts (-1.0)"),
@@ -233,11 +233,9 @@ def test_a_scene_of_bad_input_writes_no_deck(
 @pytest.mark.parametrize(
     ("change", "words", "message"),
     [
-        (("", ""), ["--set", "h_option=1"], "--set:1:10: error: a smoothing length that changes is not computed yet"),
-        (("", ""), ["--set", "xsph=true"], "--set:1:6: error: XSPH is not computed yet"),
-        (("end_time: 0.1", "h_option: 2"), [], "plate.yaml:1:11: error: a smoothing length that changes is not"),
-        (("spacing: 0.25", "set: {friction: {static: 0.5, kinetic: 0.4}}"), [],
-         "scene.yaml:1:96: error: contact friction is not computed yet (friction (0.5, 0.4))"),
+        (("spacing: 0.25", "set: {birth_death: {option: 1, particles: [1, 2]}}"), [],
+         "scene.yaml:1:99: error: birth and death of particles is not computed yet (birth_death 1)"),
+        (("", ""), ["--set", "sph.kernel=cubc"], "--set:1:12: error: sph.kernel has a wrong value (cubc)"),
         (("von_mises, density: 2, E: 10, nu: 0.3, yield_stress: 1", "cap, density: 2, K: 10, G: 5, alpha: 1"), [],
          "plate.yaml:3:16: error: material 1: W 0.0 and D 0.0 must be positive: the cap hardens by them"),
         (("decks: [", "render: [{field: presure}]\ndecks: ["), [],

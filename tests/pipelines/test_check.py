@@ -39,10 +39,12 @@ def test_the_decks_that_a_scene_makes_are_checked_and_nothing_is_written(scene: 
 
 
 def test_what_cannot_be_run_yet_is_a_warning_where_it_was_asked(scene: Path) -> None:
-    (scene.parent / "plate.yaml").write_text(SETTINGS + "h_option: 1\n")
+    (scene.parent / "plate.yaml").write_text(
+        SETTINGS + "birth_death: {option: 2, particles: [1, 2], death_plane: [0, 0, 0, 1]}\n"
+    )
     rows = check([scene])
     assert fault_lines(rows) == []
-    warning = "plate.yaml:4:11: cannot be run yet: a smoothing length that changes is not computed yet (h_opt 1)"
+    warning = "plate.yaml:4:14: cannot be run yet: birth and death of particles is not computed yet (birth_death 2)"
     assert f"  warning: {warning}" in _short(scene.parent, check_text(rows))
 
 
@@ -50,14 +52,18 @@ def test_a_deck_that_cannot_be_run_yet_is_sound(scene: Path) -> None:
     from zrno.pipelines.convert import convert
 
     deck = scene.parent / "deck.mcm"
-    settings = load_settings(scene.parent / "plate.yaml", overrides={"xsph": True})
+    settings = load_settings(
+        scene.parent / "plate.yaml",
+        overrides={"birth_death": {"option": 2, "particles": [1, 2], "death_plane": [0, 0, 0, 1]}},
+    )
     convert([scene.parent / "plate.msh"], deck, spacing=0.5, settings=settings)
     rows = check([deck])
     assert fault_lines(rows) == []
-    line = next(i for i, text in enumerate(deck.read_text().splitlines()) if "veloc_opt" in text) + 2
+    line = next(i for i, text in enumerate(deck.read_text().splitlines()) if "birth_death" in text) + 2
     assert _short(scene.parent, check_text(rows)) == [
         "deck.mcm: ok",
-        f"  warning: deck.mcm:{line}:15: cannot be run yet: XSPH is not computed yet (veloc_opt 1)",
+        f"  warning: deck.mcm:{line}:5: cannot be run yet: birth and death of particles is not computed yet "
+        "(birth_death 2)",
     ]
 
 

@@ -492,6 +492,6 @@ def test_particles_that_coincide_fail_the_run_before_it_begins(tmp_path: Path) -
 
 def test_bad_input_has_status_and_errors_alone(tmp_path: Path) -> None:
     deck(tmp_path / "impact.mcm")
-    done = zrno(tmp_path, "run", "impact.mcm", "--set", "h_option=1", "--json")
+    done = zrno(tmp_path, "run", "impact.mcm", "--set", "h_option=3", "--json")
     assert done.returncode == 2
     assert json.loads(done.stdout) == {"status": "bad input", "errors": [done.stderr.strip()]}
