@@ -25,7 +25,8 @@ class Arrays(NamedTuple):
     acceleration by artificial stress, artificial_work: its work on a particle; heat: power per mass of pair viscosity;
     density_rate, stress_rate: of diffusion; smoothed: velocities of XSPH; body_work: of a body force that changes;
     id, material, fixed (bits x y z): integers; first, count, rows: the neighbour list; c_first, c_count, c_rows: the
-    list of other bodies; reduced: (threads, .) what each thread found.
+    list of other bodies; reduced: (threads, .) what each thread found. Of total-Lagrangian bodies: deformation (d*d):
+    gradient F; hourglass: rows of `lagrangian`; nominal (d*d): V P M^-1 - kappa F / 2.
     """
 
     x: Any
@@ -81,6 +82,12 @@ class Arrays(NamedTuple):
     c_count: Any
     c_rows: Any
     reduced: Any
+    x_start: Any
+    y_start: Any
+    z_start: Any
+    deformation: Any
+    hourglass: Any
+    nominal: Any
 
 
 class Numbers(NamedTuple):
@@ -134,7 +141,7 @@ class Rows:
     """Which optional rows a run has.
 
     state: of the laws; the others say whether: contact, correction, artificial stress, pair viscosity (heat), density
-    and stress diffusion, xsph, a changing h, a changing body force.
+    and stress diffusion, xsph, a changing h, a changing body force, total-Lagrangian bodies.
     """
 
     state: int = 0
@@ -147,6 +154,7 @@ class Rows:
     xsph: bool = False
     changing_h: bool = False
     body_work: bool = False
+    lagrangian: bool = False
 
 
 class State:
@@ -164,13 +172,15 @@ class State:
         sizes = {
             "x": d, "u": d, "a": d, "x_half": d, "x_list": d, "x_start": d, "stress": six,
             "density": 1, "volume": 1, "mass": 1, "h": 1, "energy": 1, "dissipated": 1, "viscosity": 1,
-            "contact_work": int(has.contact), "artificial_work": int(has.artificial), "heat": int(has.heat),
+            "contact_work": int(has.contact), "artificial_work": int(has.artificial or has.lagrangian),
+            "heat": int(has.heat),
             "h_start": int(has.changing_h), "h_list": int(has.changing_h), "body_work": int(has.body_work),
-            "b": d if has.artificial else 0, "state": has.state,
+            "b": d if has.artificial else 0, "deformation": d * d if has.lagrangian else 0,
+            "hourglass": 4 if has.lagrangian else 0, "state": has.state,
             "gradient": d * d, "s": (d * d if has.correction else 6 if solid else 3), "nearest": 1,
             "c": d if has.contact else 0, "correction": (6 if solid else 3) if has.correction else 0,
             "density_rate": int(has.density_rate), "stress_rate": six if has.stress_rate else 0,
-            "smoothed": d if has.xsph else 0,
+            "smoothed": d if has.xsph else 0, "nominal": d * d if has.lagrangian else 0,
         }  # fmt: skip
         self.slices: dict[str, slice] = {}
         at = 0

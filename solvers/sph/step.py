@@ -6,7 +6,8 @@ Leap-frog: positions and stresses live at whole steps, velocities at half steps.
     grad v at x - dt v/2, density, rotation, stress, viscosity, energy     strain
     a, nearest distance, contact, the next dt                              force
 `prepare` does the last two once at the start. The original program numbers the same states differently; see `solver`.
-What a scene does not have is None in `advance`'s arguments and is not compiled at all.
+What a scene does not have is None in `advance`'s arguments and is not compiled at all. Bodies of the total-Lagrangian
+formulation (reference) have loops of their own for strain and force; plain: whether there are others.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import numpy as np
 
 from ..jit import kernel
 from ..threads import barrier, claim, share
-from . import across, cures, ghosts, pairs
+from . import across, cures, ghosts, lagrangian, pairs
 from .particle import critical_step, drift, each_law, half_work, kick
 
 # entries of `progress`, the loop's own memory
@@ -23,7 +24,7 @@ TIME, LAST, NEXT, STEPS, PENDING, FIRST, BAD = range(7)
 PROGRESS = 7
 
 # why `advance` came back
-REACHED, PAUSED, REBUILD, BROKEN, COLLAPSED = range(5)
+REACHED, PAUSED, REBUILD, BROKEN, COLLAPSED, FAILED = range(6)
 
 CHUNK = 256  # particles that a thread takes on at a time
 
@@ -33,13 +34,18 @@ COLLAPSE = 1e-7  # a step this small beside the first one will not recover
 
 
 @kernel
-def strain(i0, i1, shape, solid, h, line, correction, density_rate, stress_rate, arrays, numbers):
+def strain(
+    i0, i1, shape, solid, h, line, correction, density_rate, stress_rate, plain, reference, dt, arrays, numbers
+):  # fmt: skip
     """Velocity gradients of a range of particles, and the rates of diffusion, all with the old densities."""
-    pairs.velocity_gradient(
-        i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.x_half, arrays.y_half, solid, arrays.z_half,
-        arrays.u, arrays.v, arrays.w, arrays.volume, h, numbers.inverse_h2, numbers.scale, line, arrays.gradient,
-        correction,
-    )  # fmt: skip
+    if plain is not None:
+        pairs.velocity_gradient(
+            i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.x_half, arrays.y_half, solid, arrays.z_half,
+            arrays.u, arrays.v, arrays.w, arrays.volume, h, numbers.inverse_h2, numbers.scale, line, arrays.gradient,
+            correction,
+        )  # fmt: skip
+    if reference is not None:
+        lagrangian.deformation(i0, i1, solid, line, dt, reference, arrays)
     if density_rate is not None:
         cures.density_diffusion(
             i0, i1, solid, shape, arrays.x_half, arrays.y_half, arrays.z_half, arrays, numbers,
@@ -54,7 +60,7 @@ def strain(i0, i1, shape, solid, h, line, correction, density_rate, stress_rate,
 
 @kernel
 def force(i0, i1, shape, z, h, mass, nearest, line, cx, potential, mixed, correction, bx, artificial, heat, body_work,
-          dt, arrays, numbers):  # fmt: skip
+          dt, plain, reference, arrays, numbers):  # fmt: skip
     """Accelerations of a range of particles; returns their critical step."""
     if mixed is not None:
         weight = arrays.volume
@@ -64,11 +70,15 @@ def force(i0, i1, shape, z, h, mass, nearest, line, cx, potential, mixed, correc
         weight = mass
         density = None
         scale = numbers.force_scale
-    pairs.momentum(
-        i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.x, arrays.y, z, arrays.s, weight, h,
-        numbers.inverse_h2, scale, line, numbers.body, arrays.ax, arrays.ay, arrays.az, nearest, density, correction,
-        artificial, numbers.inverse_w, bx, arrays.by, arrays.bz,
-    )  # fmt: skip
+    if plain is not None:
+        pairs.momentum(
+            i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.x, arrays.y, z, arrays.s, weight, h,
+            numbers.inverse_h2, scale, line, numbers.body, arrays.ax, arrays.ay, arrays.az, nearest, density,
+            correction, artificial, numbers.inverse_w, bx, arrays.by, arrays.bz,
+        )  # fmt: skip
+    longest = np.inf
+    if reference is not None:
+        longest = lagrangian.internal_force(i0, i1, z, plain, reference, arrays, numbers)
     if heat is not None:
         cures.pair_viscosity(i0, i1, z, shape, arrays, numbers, heat)
     if potential is not None:
@@ -78,7 +88,7 @@ def force(i0, i1, shape, z, h, mass, nearest, line, cx, potential, mixed, correc
             numbers.original, arrays.ax, arrays.ay, arrays.az, cx, arrays.cy, arrays.cz,
         )  # fmt: skip
     half_work(i0, i1, z, cx, bx, body_work, dt, arrays, numbers)
-    return critical_step(i0, i1, z, numbers, arrays)
+    return min(longest, critical_step(i0, i1, z, numbers, arrays))
 
 
 @kernel
@@ -96,7 +106,7 @@ def body_force_at(time, numbers):
 def advance(
     thread, threads, sync, n, offset, shape, solid, z, h, mass, nearest, line, cx, potential, mixed, correction, bx,
     artificial, h_list, h_start, density_rate, stress_rate, heat, smoothed, smoothing, body_work, image_source,
-    image_sign, image_shift, arrays, numbers, laws, progress, until, pause, steps, reach2,
+    image_sign, image_shift, plain, reference, arrays, numbers, laws, progress, until, pause, steps, reach2,
 ):  # fmt: skip
     """Take up to `steps` steps towards `until`, each thread for its own range; returns why it stopped.
 
@@ -127,7 +137,7 @@ def advance(
                 while c < chunks:
                     strain(
                         c * chunk, min(n, (c + 1) * chunk), shape, solid, h, line, correction, density_rate,
-                        stress_rate, arrays, numbers,
+                        stress_rate, plain, reference, last, arrays, numbers,
                     )  # fmt: skip
                     c = claim(sync, taken)
                 taken += chunks + threads
@@ -135,9 +145,16 @@ def advance(
                 each_law(
                     laws, 0, i0, i1, z, last, correction, h_start, density_rate, stress_rate, heat, arrays, numbers
                 )
+                if reference is not None:
+                    arrays.reduced[thread, 3] = lagrangian.nominal_stress(i0, i1, z, reference, arrays)
                 for i in range(i0, i1):
                     arrays.volume[i] = arrays.mass[i] / arrays.density[i]
                 barrier(sync, threads)
+                if reference is not None:
+                    bad = arrays.reduced[:threads, 3].max()
+                    if bad >= 0.0:
+                        reason = FAILED
+                        break
                 if image_source is not None:
                     ghosts.follow_stress(g0, g1, offset, z, correction, image_source, image_sign, arrays)
                     barrier(sync, threads)
@@ -150,7 +167,7 @@ def advance(
             while c < chunks:
                 part = force(
                     c * chunk, min(n, (c + 1) * chunk), shape, z, h, mass, nearest, line, cx, potential, mixed,
-                    correction, bx, artificial, heat, body_work, last, arrays, numbers,
+                    correction, bx, artificial, heat, body_work, last, plain, reference, arrays, numbers,
                 )  # fmt: skip
                 least = min(least, part)
                 c = claim(sync, taken)
@@ -216,6 +233,6 @@ def advance(
         progress[NEXT] = dt
         progress[STEPS] += done
         progress[PENDING] = 1.0 if pending else 0.0
-        if reason == BROKEN:
+        if reason in (BROKEN, FAILED):
             progress[BAD] = bad
     return reason
