@@ -24,7 +24,7 @@ class Body:
     viscosity by the rate of volume [-]; least, most: limits of the density; strength, exponent: of the repulsive
     contact; alpha, beta: of Monaghan's pair viscosity [-]; density_diffusion: delta-SPH for fluids (0.1);
     stress_diffusion: regularised stress of grain (0.1). lagrangian: the total-Lagrangian formulation, for a body that
-    stays whole; hourglass: its share of lambda + 2 G against hourglass modes [-].
+    stays whole; hourglass: the share of Young's modulus that resists hourglass modes, 0 .. 1.
     """
 
     number: int
@@ -42,7 +42,7 @@ class Body:
     density_diffusion: float = 0.0
     stress_diffusion: float = 0.0
     lagrangian: bool = False
-    hourglass: float = 0.1
+    hourglass: float = 0.8
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..jit import exact_kernel, kernel
-from ..materials import sound_speed
 from ..neighbours import Cells, NeighbourList
-from .lagrangian import KAPPA
+from .nominal import KAPPA
 from .pairs import TINY, WELL
 from .problem import Problem
 from .smoothing import inverse_root, normaliser, shape_slope, shape_value
@@ -27,8 +26,8 @@ class Reference(NamedTuple):
 
     first, count: (n,), zero for particles of other bodies and for those without neighbours; rows: numbers of the
     neighbours (uint32); weight: c of each (single precision, negative, zero in the padding). inverse: (6 | 3, n + 1)
-    M^-1, trace: (n + 1,) of M. volume, density: (n + 1,) at the start. modulus: (bodies,) lambda + 2 G; stiffness: the
-    share of it that resists hourglass modes.
+    M^-1, trace: (n + 1,) of M. volume, density: (n + 1,) at the start. stiffness: (bodies,) the share of Young's
+    modulus that resists hourglass modes.
     """
 
     first: Any
@@ -39,7 +38,6 @@ class Reference(NamedTuple):
     trace: Any
     volume: Any
     density: Any
-    modulus: Any
     stiffness: Any
 
 
@@ -87,6 +85,10 @@ def _shape_matrices(n, first, count, rows, weight, x, y, z, matrix):
                 matrix[i, 2, 2] += c * dz * dz
 
 
+def _young(law: Any) -> float:
+    return float(law.shear * (3.0 * law.lame + 2.0 * law.shear) / (law.lame + law.shear))
+
+
 def check(p: Problem) -> None:
     """ValueError where a problem asks of bodies that stay whole what they cannot do together."""
     wrong = {
@@ -115,7 +117,9 @@ def build(p: Problem, s: State, shape: Any, threads: int) -> Reference:
     """
     n = s.n
     whole = np.array([b.lagrangian for b in p.bodies])[s.material[:n]]
-    x = [s.row("x_start", k) for k in range(3)]
+    x, y, z = (s.row("x_start", k) for k in range(3))
+    assert x is not None
+    assert y is not None
     h = s.rows("h")[0]
     density = s.rows("density")[0].copy()
     volume = s.rows("mass")[0] / density
@@ -124,23 +128,22 @@ def build(p: Problem, s: State, shape: Any, threads: int) -> Reference:
     group = np.where(whole, s.material[:n], -1 - np.arange(n))  # others are nobody's neighbours here
     listed = NeighbourList(n)
     listed.build(
-        Cells(n, x[0], x[1], x[2], radius), x[0], x[1], x[2], radius=radius if uniform else 0.5 * radius, skin=0.0,
+        Cells(n, x, y, z, radius), x, y, z, radius=radius if uniform else 0.5 * radius, skin=0.0,
         h=None if uniform else h * (0.5 * shape.support), group=group, other=False, threads=threads, dummy=s.dummy,
     )  # fmt: skip
     weight = np.zeros(len(listed.rows), np.float32)
     _weigh(
-        n, listed.first, listed.count, listed.rows, s.dummy, shape, x[0], x[1], x[2], h, volume,
+        n, listed.first, listed.count, listed.rows, s.dummy, shape, x, y, z, h, volume,
         normaliser(shape, p.dimension), p.dimension, weight,
     )  # fmt: skip
     matrix = np.zeros((n, 3, 3))
-    _shape_matrices(n, listed.first, listed.count, listed.rows, weight, x[0], x[1], x[2], matrix)
-    modulus = np.array([b.density * sound_speed(b.law, b.density) ** 2 for b in p.bodies])
+    _shape_matrices(n, listed.first, listed.count, listed.rows, weight, x, y, z, matrix)
     trace = np.zeros(s.dummy + 1)
     trace[:n] = np.trace(matrix, axis1=1, axis2=2)
     reference = Reference(
         first=listed.first, count=np.where(trace[:n] > 0.0, listed.count, 0), rows=listed.rows, weight=weight,
-        inverse=_inverses(p, s, matrix, listed.count), trace=trace, volume=volume, density=density, modulus=modulus,
-        stiffness=modulus * np.array([b.hourglass for b in p.bodies]),
+        inverse=_inverses(p, s, matrix, listed.count), trace=trace, volume=volume, density=density,
+        stiffness=np.array([b.hourglass * _young(b.law) for b in p.bodies]),
     )  # fmt: skip
     s.rows("deformation")[:: s.d + 1] = 1.0
     s.rows("hourglass")[KAPPA, :n] = reference.stiffness[s.material[:n]] * (reference.count > 0)

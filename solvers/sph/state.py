@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ..jit import kernel
 from ..threads import run, share
+from .nominal import HOURGLASS
 
 Floats = NDArray[np.float64]
 
@@ -176,7 +177,7 @@ class State:
             "heat": int(has.heat),
             "h_start": int(has.changing_h), "h_list": int(has.changing_h), "body_work": int(has.body_work),
             "b": d if has.artificial else 0, "deformation": d * d if has.lagrangian else 0,
-            "hourglass": 4 if has.lagrangian else 0, "state": has.state,
+            "hourglass": HOURGLASS if has.lagrangian else 0, "state": has.state,
             "gradient": d * d, "s": (d * d if has.correction else 6 if solid else 3), "nearest": 1,
             "c": d if has.contact else 0, "correction": (6 if solid else 3) if has.correction else 0,
             "density_rate": int(has.density_rate), "stress_rate": six if has.stress_rate else 0,

@@ -17,6 +17,7 @@ import numpy as np
 from ..jit import kernel
 from ..threads import barrier, claim, share
 from . import across, cures, ghosts, lagrangian, pairs
+from .nominal import nominal_stress
 from .particle import critical_step, drift, each_law, half_work, kick
 
 # entries of `progress`, the loop's own memory
@@ -146,7 +147,7 @@ def advance(
                     laws, 0, i0, i1, z, last, correction, h_start, density_rate, stress_rate, heat, arrays, numbers
                 )
                 if reference is not None:
-                    arrays.reduced[thread, 3] = lagrangian.nominal_stress(i0, i1, z, reference, arrays)
+                    arrays.reduced[thread, 3] = nominal_stress(i0, i1, z, reference, arrays)
                 for i in range(i0, i1):
                     arrays.volume[i] = arrays.mass[i] / arrays.density[i]
                 barrier(sync, threads)
