@@ -8,7 +8,8 @@ As P F' is symmetric, the sum of x_i x f_i vanishes too. F is the fit of the pos
     psi_i = 1/4 sum_j -c_ij |F_i X_ij - x_ij|^2
 is what no F can describe: the hourglass modes (Ganzenmueller 2015). kappa_i psi_i is taken as their energy. Because F
 minimises it, its force is that at constant F, sum_j -c_ij/2 (kappa_i (F_i X_ij - x_ij) + kappa_j (F_j X_ij - x_ij)):
-pairwise, without moment, zero for affine fields, and as X_ij c_ij = G_ij the parts of F ride on the stress.
+pairwise, without moment, zero for affine fields, and as X_ij c_ij = G_ij the parts of F ride on the stress. The loops
+have displacements x - X and their gradient F - I in place of x and F: a body at rest stays there to the last bit.
 
 Shapes: as in `pairs`; the reference list, its weights c (single precision: only their symmetry matters, the rest is
 exact for any c) and the inverse shape matrices stand in `reference.Reference`.
@@ -27,8 +28,8 @@ FLATTENED = 1.2  # whatever the deck's option: no step longer than this times ne
 
 
 @kernel
-def deformation(i0, i1, solid, line, dt, reference, arrays):
-    """Deformation gradients at the positions now, and with the old ones the velocity gradient of the step between.
+def deformation(i0, i1, solid, dt, reference, arrays):
+    """F - I at the positions now, and with the old one the velocity gradient of the step between.
 
     L = (F - F_old)/dt ((F + F_old)/2)^-1: its strain is none in a rotation, and its spin turns by the very angle.
     """
@@ -43,18 +44,18 @@ def deformation(i0, i1, solid, line, dt, reference, arrays):
     for i in range(i0, i1):
         if reference.count[i] == 0:
             continue
-        xi = x[i]
-        yi = y[i]
         xs = x_start[i]
         ys = y_start[i]
+        xi = x[i] - xs
+        yi = y[i] - ys
         axx = 0.0
         axy = 0.0
         ayx = 0.0
         ayy = 0.0
         spread = 0.0
         if solid is not None:
-            zi = z[i]
             zs = z_start[i]
+            zi = z[i] - zs
             axz = 0.0
             ayz = 0.0
             azx = 0.0
@@ -64,18 +65,21 @@ def deformation(i0, i1, solid, line, dt, reference, arrays):
         for k in range(np.uint64(reference.count[i])):
             j = rows[begin + k]
             c = np.float64(weight[begin + k])
-            gx = c * (xs - x_start[j])
-            gy = c * (ys - y_start[j])
-            dx = x[j] - xi
-            dy = y[j] - yi
+            xj = x_start[j]
+            yj = y_start[j]
+            gx = c * (xs - xj)
+            gy = c * (ys - yj)
+            dx = (x[j] - xj) - xi
+            dy = (y[j] - yj) - yi
             r2 = dx * dx + dy * dy
             axx += dx * gx
             axy += dx * gy
             ayx += dy * gx
             ayy += dy * gy
             if solid is not None:
-                gz = c * (zs - z_start[j])
-                dz = z[j] - zi
+                zj = z_start[j]
+                gz = c * (zs - zj)
+                dz = (z[j] - zj) - zi
                 r2 += dz * dz
                 axz += dx * gz
                 ayz += dy * gz
@@ -101,15 +105,15 @@ def deformation(i0, i1, solid, line, dt, reference, arrays):
             fzz = azx * bzx + azy * byz + azz * bzz
             spread -= axx * fxx + axy * fxy + axz * fxz + ayx * fyx + ayy * fyy + ayz * fyz
             spread -= azx * fzx + azy * fzy + azz * fzz
-            mxx = 0.5 * (fxx + f[0, i])
+            mxx = 1.0 + 0.5 * (fxx + f[0, i])
             mxy = 0.5 * (fxy + f[1, i])
             mxz = 0.5 * (fxz + f[2, i])
             myx = 0.5 * (fyx + f[3, i])
-            myy = 0.5 * (fyy + f[4, i])
+            myy = 1.0 + 0.5 * (fyy + f[4, i])
             myz = 0.5 * (fyz + f[5, i])
             mzx = 0.5 * (fzx + f[6, i])
             mzy = 0.5 * (fzy + f[7, i])
-            mzz = 0.5 * (fzz + f[8, i])
+            mzz = 1.0 + 0.5 * (fzz + f[8, i])
             cxx = myy * mzz - myz * mzy
             cxy = myz * mzx - myx * mzz
             cxz = myx * mzy - myy * mzx
@@ -158,13 +162,11 @@ def deformation(i0, i1, solid, line, dt, reference, arrays):
             fxy = axx * bxy + axy * byy
             fyx = ayx * bxx + ayy * bxy
             fyy = ayx * bxy + ayy * byy
-            if line is not None:
-                fyy = 1.0
             spread -= axx * fxx + axy * fxy + ayx * fyx + ayy * fyy
-            mxx = 0.5 * (fxx + f[0, i])
+            mxx = 1.0 + 0.5 * (fxx + f[0, i])
             mxy = 0.5 * (fxy + f[1, i])
             myx = 0.5 * (fyx + f[2, i])
-            myy = 0.5 * (fyy + f[3, i])
+            myy = 1.0 + 0.5 * (fyy + f[3, i])
             rate = 1.0 / (dt * (mxx * myy - mxy * myx))
             dxx = (fxx - f[0, i]) * rate
             dxy = (fxy - f[1, i]) * rate
@@ -235,8 +237,10 @@ def internal_force(i0, i1, z, plain, reference, arrays, numbers):
         for k in range(np.uint64(reference.count[i])):
             j = rows[begin + k]
             c = np.float64(weight[begin + k])
-            gx = c * (xs - x_start[j])
-            gy = c * (ys - y_start[j])
+            rx = xs - x_start[j]
+            ry = ys - y_start[j]
+            gx = c * rx
+            gy = c * ry
             dx = xi - x[j]
             dy = yi - y[j]
             r2 = dx * dx + dy * dy
@@ -244,16 +248,17 @@ def internal_force(i0, i1, z, plain, reference, arrays, numbers):
             sum_gx += gx
             sum_gy += gy
             if z is not None:
-                gz = c * (zs - z_start[j])
+                rz = zs - z_start[j]
+                gz = c * rz
                 dz = zi - z[j]
                 r2 += dz * dz
                 sum_gz += gz
-                fx += sxx[j] * gx + sxy[j] * gy + sxz[j] * gz + spring * dx
-                fy += syx[j] * gx + syy[j] * gy + syz[j] * gz + spring * dy
-                fz += szx[j] * gx + szy[j] * gy + szz[j] * gz + spring * dz
+                fx += sxx[j] * gx + sxy[j] * gy + sxz[j] * gz + spring * (dx - rx)
+                fy += syx[j] * gx + syy[j] * gy + syz[j] * gz + spring * (dy - ry)
+                fz += szx[j] * gx + szy[j] * gy + szz[j] * gz + spring * (dz - rz)
             else:
-                fx += sxx[j] * gx + sxy[j] * gy + spring * dx
-                fy += syx[j] * gx + syy[j] * gy + spring * dy
+                fx += sxx[j] * gx + sxy[j] * gy + spring * (dx - rx)
+                fy += syx[j] * gx + syy[j] * gy + spring * (dy - ry)
             least = min(least, bits_of(r2))
         inverse = 1.0 / arrays.mass[i]
         if z is not None:

@@ -30,7 +30,7 @@ def _equivalent(stress, z, i):
 
 @kernel
 def nominal_stress(i0, i1, z, reference, arrays):
-    """After the law: density, V P M^-1 - kappa F / 2 into `nominal`, and the work on the hourglass modes.
+    """After the law: density, V P M^-1 - kappa (F - I)/2 into `nominal`, and the work on the hourglass modes.
 
     Where the material has flowed its resistance is not its modulus any more: kappa then is so small that the hourglass
     stress stays below a share of the greatest equivalent stress that the particle has borne. Returns a particle that
@@ -66,15 +66,15 @@ def nominal_stress(i0, i1, z, reference, arrays):
             zz = v * (stress[2, i] - q)
             yz = v * stress[4, i]
             zx = v * stress[5, i]
-            fxx = f[0, i]
+            fxx = 1.0 + f[0, i]
             fxy = f[1, i]
             fxz = f[2, i]
             fyx = f[3, i]
-            fyy = f[4, i]
+            fyy = 1.0 + f[4, i]
             fyz = f[5, i]
             fzx = f[6, i]
             fzy = f[7, i]
-            fzz = f[8, i]
+            fzz = 1.0 + f[8, i]
             cxx = fyy * fzz - fyz * fzy
             cxy = fyz * fzx - fyx * fzz
             cxz = fyx * fzy - fyy * fzx
@@ -96,26 +96,26 @@ def nominal_stress(i0, i1, z, reference, arrays):
             px = xx * cxx + xy * cyx + zx * czx
             py = xx * cxy + xy * cyy + zx * czy
             pz = xx * cxz + xy * cyz + zx * czz
-            nominal[0, i] = px * bxx + py * bxy + pz * bzx - half * fxx
-            nominal[1, i] = px * bxy + py * byy + pz * byz - half * fxy
-            nominal[2, i] = px * bzx + py * byz + pz * bzz - half * fxz
+            nominal[0, i] = px * bxx + py * bxy + pz * bzx - half * f[0, i]
+            nominal[1, i] = px * bxy + py * byy + pz * byz - half * f[1, i]
+            nominal[2, i] = px * bzx + py * byz + pz * bzz - half * f[2, i]
             px = xy * cxx + yy * cyx + yz * czx
             py = xy * cxy + yy * cyy + yz * czy
             pz = xy * cxz + yy * cyz + yz * czz
-            nominal[3, i] = px * bxx + py * bxy + pz * bzx - half * fyx
-            nominal[4, i] = px * bxy + py * byy + pz * byz - half * fyy
-            nominal[5, i] = px * bzx + py * byz + pz * bzz - half * fyz
+            nominal[3, i] = px * bxx + py * bxy + pz * bzx - half * f[3, i]
+            nominal[4, i] = px * bxy + py * byy + pz * byz - half * f[4, i]
+            nominal[5, i] = px * bzx + py * byz + pz * bzz - half * f[5, i]
             px = zx * cxx + yz * cyx + zz * czx
             py = zx * cxy + yz * cyy + zz * czy
             pz = zx * cxz + yz * cyz + zz * czz
-            nominal[6, i] = px * bxx + py * bxy + pz * bzx - half * fzx
-            nominal[7, i] = px * bxy + py * byy + pz * byz - half * fzy
-            nominal[8, i] = px * bzx + py * byz + pz * bzz - half * fzz
+            nominal[6, i] = px * bxx + py * bxy + pz * bzx - half * f[6, i]
+            nominal[7, i] = px * bxy + py * byy + pz * byz - half * f[7, i]
+            nominal[8, i] = px * bzx + py * byz + pz * bzz - half * f[8, i]
         else:
-            fxx = f[0, i]
+            fxx = 1.0 + f[0, i]
             fxy = f[1, i]
             fyx = f[2, i]
-            fyy = f[3, i]
+            fyy = 1.0 + f[3, i]
             volume = fxx * fyy - fxy * fyx
             norm2 = fxx * fxx + fxy * fxy + fyx * fyx + fyy * fyy
             bxx = inverse[0, i]
@@ -123,12 +123,12 @@ def nominal_stress(i0, i1, z, reference, arrays):
             bxy = inverse[2, i]
             px = xx * fyy - xy * fxy
             py = xy * fxx - xx * fyx
-            nominal[0, i] = px * bxx + py * bxy - half * fxx
-            nominal[1, i] = px * bxy + py * byy - half * fxy
+            nominal[0, i] = px * bxx + py * bxy - half * f[0, i]
+            nominal[1, i] = px * bxy + py * byy - half * f[1, i]
             px = xy * fyy - yy * fxy
             py = yy * fxx - xy * fyx
-            nominal[2, i] = px * bxx + py * bxy - half * fyx
-            nominal[3, i] = px * bxy + py * byy - half * fyy
+            nominal[2, i] = px * bxx + py * bxy - half * f[2, i]
+            nominal[3, i] = px * bxy + py * byy - half * f[3, i]
         arrays.density[i] = reference.density[i] / volume
         if not (volume > CRUSHED and norm2 < STRETCHED * STRETCHED):
             bad = i

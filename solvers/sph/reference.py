@@ -111,7 +111,7 @@ def check(p: Problem) -> None:
 
 
 def build(p: Problem, s: State, shape: Any, threads: int) -> Reference:
-    """The reference configuration is that of the start; sets the deformation gradients there to the identity.
+    """The reference configuration is that of the start; hourglass control begins with its full stiffness.
 
     ValueError where a particle's neighbours lie in a plane or a line and leave its deformation open.
     """
@@ -145,9 +145,7 @@ def build(p: Problem, s: State, shape: Any, threads: int) -> Reference:
         inverse=_inverses(p, s, matrix, listed.count), trace=trace, volume=volume, density=density,
         stiffness=np.array([b.hourglass * _young(b.law) for b in p.bodies]),
     )  # fmt: skip
-    s.rows("deformation")[:: s.d + 1] = 1.0
     s.rows("hourglass")[KAPPA, :n] = reference.stiffness[s.material[:n]] * (reference.count > 0)
-    s.rows("nominal")[:: s.d + 1] = -0.5 * s.rows("hourglass")[KAPPA]
     return reference
 
 

@@ -468,7 +468,7 @@ class Solver:
     def _failed(self) -> Diverged:
         i = int(self._progress[step.BAD])
         s = self._state
-        f = s.rows("deformation")[:, i].reshape(s.d, s.d)
+        f = np.eye(s.d) + s.rows("deformation")[:, i].reshape(s.d, s.d)
         return Diverged(
             self.step,
             int(s.id[i]),

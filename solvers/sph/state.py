@@ -27,7 +27,7 @@ class Arrays(NamedTuple):
     density_rate, stress_rate: of diffusion; smoothed: velocities of XSPH; body_work: of a body force that changes;
     id, material, fixed (bits x y z): integers; first, count, rows: the neighbour list; c_first, c_count, c_rows: the
     list of other bodies; reduced: (threads, .) what each thread found. Of total-Lagrangian bodies: deformation (d*d):
-    gradient F; hourglass: rows of `lagrangian`; nominal (d*d): V P M^-1 - kappa F / 2.
+    F - I; hourglass: rows of `nominal`; nominal (d*d): V P M^-1 - kappa (F - I)/2.
     """
 
     x: Any

@@ -46,7 +46,7 @@ def strain(
             correction,
         )  # fmt: skip
     if reference is not None:
-        lagrangian.deformation(i0, i1, solid, line, dt, reference, arrays)
+        lagrangian.deformation(i0, i1, solid, dt, reference, arrays)
     if density_rate is not None:
         cures.density_diffusion(
             i0, i1, solid, shape, arrays.x_half, arrays.y_half, arrays.z_half, arrays, numbers,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+import itertools
 import math
 from pathlib import Path
 from typing import Any
@@ -66,8 +67,7 @@ def impose(s: Solver, x: np.ndarray, dt: float = 1.0) -> None:
     solid = True if s.problem.dimension == 3 else None
     z = a.z if solid else None
     s._state.rows("x")[: len(x), :n] = x
-    line = True if s.problem.dimension == 1 else None
-    lagrangian.deformation(0, n, solid, line, dt, s._reference, a)
+    lagrangian.deformation(0, n, solid, dt, s._reference, a)
     particle.constitutive(0, n, z, 0, s._laws[0], dt, None, None, None, None, None, a, s._numbers)
     assert nominal_stress(0, n, z, s._reference, a) == -1.0
     lagrangian.internal_force(0, n, z, None, s._reference, a, s._numbers)
@@ -86,7 +86,7 @@ def test_a_linear_field_is_exact_and_meets_no_hourglass_control(dimension: int) 
         map_ = np.diag([1.3, 1.0])
     start = s._state.rows("x_start")[:, :n].copy()
     impose(s, map_ @ start)
-    f = s._state.rows("deformation")[:, :n].reshape(d, d, n)
+    f = s._state.rows("deformation")[:, :n].reshape(d, d, n) + np.eye(d)[:, :, None]
     assert np.abs(f - map_[:, :, None]).max() < 1e-12
     assert np.allclose(s._state.rows("density")[0, :n], 1.0 / np.linalg.det(map_), rtol=1e-12, atol=0.0)
     force = s._state.rows("a")[:, :n] * s._state.rows("mass")[0, :n]
@@ -195,26 +195,31 @@ def test_a_bar_wave_arrives_in_time() -> None:
     assert front == pytest.approx(1.0, abs=0.01)
 
 
+def stretching(whole: bool) -> Solver:
+    """A strip that its own speed stretches by half, and by more in its middle."""
+    p = block((40, 10))
+    v = np.zeros_like(p.x)
+    v[:, 0] = 0.5 * (p.x[:, 0] - p.x[:, 0].mean())
+    return Solver(dataclasses.replace(p, v=v, bodies=(dataclasses.replace(BODY, lagrangian=whole),), step_factor=0.4))
+
+
 def test_stretch_by_half_does_not_tear_the_lattice() -> None:
-    """A strip that its own speed stretches by half; the plain formulation falls into clumps (W'' sigma > 0)."""
-    uneven = []
-    for whole in (True, False):
-        p = block((40, 10))
-        middle = p.x[:, 0].mean()
-        v = np.zeros_like(p.x)
-        v[:, 0] = 0.7 * (p.x[:, 0] - middle)
-        body = dataclasses.replace(BODY, lagrangian=whole)
-        s = Solver(dataclasses.replace(p, v=v, bodies=(body,), step_factor=0.4))
-        while s.time < 4.0:
-            s.advance(s.time + 0.05, 10**6)
-            place = s.frame().particles["position"]
-            if np.ptp(place[:, 0]) > 1.5 * np.ptp(p.x[:, 0]):
-                break
-        gaps = np.diff(place.reshape(40, 10, 3)[8:32, 5, 0])
-        assert np.ptp(place[:, 0]) > 1.5 * np.ptp(p.x[:, 0])
-        uneven.append(np.std(gaps) / np.mean(gaps))
-    assert uneven[0] < 0.05
-    assert uneven[1] > 0.3
+    s = stretching(True)
+    longest = 0.0
+    while s.time < 4.0:
+        s.advance(s.time + 0.1, 10**6)
+        place = s.frame().particles["position"].reshape(40, 10, 3)
+        longest = max(longest, np.ptp(place[:, 5, 0]) / 3.9)
+        gaps = np.diff(place[:, 5, 0])
+        assert np.abs(np.diff(gaps, 2)).max() < 0.1 * gaps.mean()  # no zigzag in them
+    assert longest > 1.5
+    assert s.energy_report()["balance_error"] < 1e-2
+
+
+def test_the_plain_formulation_tears_that_lattice() -> None:
+    """W'' sigma > 0: its particles clump until two of them coincide."""
+    with pytest.raises(Diverged, match="clump"):
+        stretching(False).advance(4.0, 10**6)
 
 
 def test_hourglass_control_holds_a_mode_without_energy() -> None:
@@ -270,7 +275,7 @@ def plate(layers: int, periods: float) -> tuple[float, float]:
     up = np.flatnonzero((y[:-1] <= 0.0) & (y[1:] > 0.0))
     crossed = t[up] - y[up] * (t[up + 1] - t[up]) / (y[up + 1] - y[up])
     period = (crossed[-1] - crossed[0]) / (len(crossed) - 1)
-    largest = [y[(t >= a) & (t < b)].max() for a, b in zip(crossed[:-1], crossed[1:], strict=True)]
+    largest = [y[(t >= a) & (t < b)].max() for a, b in itertools.pairwise(crossed)]
     assert solver.energy_report()["balance_error"] < 1e-3
     return period / exact.period(), largest[-1] / largest[0]
 
@@ -358,7 +363,7 @@ def test_a_rod_on_a_wall(shared: Path, cells: int) -> None:
 def pair(second: Body, gap: float = 0.1) -> Problem:
     """A body that stays whole and another one beside it, which run into each other."""
     p = block((8, 8))
-    x = np.concatenate((p.x, p.x + [0.8 + gap, 0.0, 0.0]))
+    x = np.concatenate((p.x, p.x + np.array([0.8 + gap, 0.0, 0.0])))
     n = len(p.x)
     v = np.zeros_like(x)
     v[:n, 0], v[n:, 0] = 0.01, -0.01
@@ -442,13 +447,17 @@ def test_a_particle_alone_flies_on() -> None:
     assert np.all(moved[:35] == 0.0)
 
 
-def test_a_body_that_does_not_stay_whole_stops_the_run_by_name() -> None:
+@pytest.mark.parametrize("rate", [-1.0, 1.0])
+def test_a_body_that_does_not_stay_whole_stops_the_run_by_name(rate: float) -> None:
+    """So soft a body is crushed or drawn out by its own speed."""
     p = block((10, 10))
     v = np.zeros_like(p.x)
-    v[:, 0] = np.where(p.x[:, 0] < 0.5, 3.0, -3.0)
+    v[:, 0] = rate * (p.x[:, 0] - 0.5)
+    body = dataclasses.replace(BODY, law=Elastic.from_engineering(1e-6, 0.3), linear=0.0, quadratic=0.0)
+    s = Solver(dataclasses.replace(p, v=v, bodies=(body,)))
     with pytest.raises(Diverged, match="times that of the start") as caught:
-        Solver(dataclasses.replace(p, v=v, step_factor=0.2)).advance(10.0, 10**6)
-    assert caught.value.step > 0
+        s.advance(100.0, 10**6)
+    assert caught.value.step == s.step > 0
     assert 1 <= caught.value.item <= 100
 
 
@@ -474,7 +483,7 @@ def test_what_does_not_go_together_is_refused(change: dict[str, Any], wrong: str
 
 def test_energy_of_the_hourglass_modes_is_that_of_their_force() -> None:
     """kappa psi, a function of the places alone, against the work of the force along a path."""
-    s = Solver(irregular(2))
+    s = Solver(dataclasses.replace(irregular(2), bodies=(dataclasses.replace(BODY, linear=0.0, quadratic=0.0),)))
     n = s.n
     s._laws = (Elastic(0.0, 0.0),)
     start = s._state.rows("x_start")[:, :n].copy()
