@@ -25,7 +25,8 @@ class Body:
     number: of the deck; law: of `zrno.solvers.materials`; density [mass/length^3]; linear, quadratic: artificial
     viscosity by the rate of volume [-]; least, most: limits of the density; strength, exponent: of the repulsive
     contact; alpha, beta: of Monaghan's pair viscosity [-]; density_diffusion: delta-SPH for fluids (0.1);
-    stress_diffusion: regularised stress of grain (0.1).
+    stress_diffusion: regularised stress of grain (0.1). lagrangian: the total-Lagrangian formulation, for a body that
+    stays whole; hourglass: the share of Young's modulus that resists hourglass modes, 0 .. 1.
     """
 
     number: int
@@ -42,6 +43,8 @@ class Body:
     beta: float = 0.0
     density_diffusion: float = 0.0
     stress_diffusion: float = 0.0
+    lagrangian: bool = False
+    hourglass: float = 0.8
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,9 +19,9 @@ from ..frame import Frame
 from ..materials import PLASTIC_STRAIN, constant_wave, sound_speed, state_rows
 from ..neighbours import FAR, Cells, NeighbourList
 from ..threads import available, run
-from . import across, ghosts, measures, probes, step
+from . import across, ghosts, measures, probes, reference, step
 from .contact import contact_of, culprit
-from .problem import STEP_OPTIONS, Problem
+from .problem import STEP_OPTIONS, Cures, Problem
 from .smoothing import normaliser, shape_of, value_at
 from .state import Arrays, Numbers, Rows, State
 
@@ -51,7 +51,8 @@ class Solver:
         self._uniform_h = bool(np.all(problem.h == problem.h[0])) and problem.h_option == 0
         self._uniform_mass = bool(np.all(problem.mass == problem.mass[0]))
         self._skin = skin * float(problem.h.max()) * 0.5 * self._shape.support
-        cures = problem.cures
+        self._plain = not all(b.lagrangian for b in problem.bodies)
+        cures = self._cures = problem.cures if self._plain else Cures()
         self._heats = any(b.alpha or b.beta for b in problem.bodies)
         has = Rows(
             state=max(state_rows(b.law) for b in problem.bodies),
@@ -69,6 +70,7 @@ class Solver:
             slip=self._contact.friction is not None,
             normals=self._contact.normals is not None,
             wall_slip=self._contact.wall_slip,
+            lagrangian=any(b.lagrangian for b in problem.bodies),
         )
         self._has = has
         self._state = State(n, problem.dimension, has)
@@ -82,6 +84,8 @@ class Solver:
         self._laws = tuple(b.law for b in problem.bodies)
         self._numbers = self._make_numbers()
         self._fill_state()
+        self._spare = 0.5 * self._skin  # how far particles go before the next list
+        self._reference = self._make_reference() if has.lagrangian else None
         self._rebuild()
         self._progress[step.PENDING] = 1.0
         self._run_kernel(0.0, 0)
@@ -176,6 +180,16 @@ class Solver:
         self._progress[step.LAST] = first
         self._progress[step.PENDING] = 1.0
 
+    def _make_reference(self) -> reference.Reference:
+        """Particles are sorted once: the reference list is to hold."""
+        reference.check(self.problem)
+        s = self._state
+        x, y, z = (s.row("x_start", k) for k in range(3))
+        assert x is not None
+        assert y is not None
+        s.sort(Cells(self.n, x, y, z, self._shape.support * float(self.problem.h.max())).order, self.threads)
+        return reference.build(self.problem, s, self._shape, self.threads)
+
     def kernels(self) -> str:
         """What the loops were built for, for the log."""
         p = self.problem
@@ -190,8 +204,9 @@ class Solver:
 
     def _terms(self) -> list[str]:
         """What a run has beyond the plain method."""
-        p, cures = self.problem, self.problem.cures
+        p, cures = self.problem, self._cures
         said = {
+            "total-Lagrangian: " + ", ".join(b.name for b in p.bodies if b.lagrangian): self._has.lagrangian,
             "gradient correction": cures.correction,
             f"artificial stress {cures.artificial_stress:g}": cures.artificial_stress > 0.0,
             "density diffusion": self._has.density_rate,
@@ -243,6 +258,8 @@ class Solver:
                     break
             elif reason == step.BROKEN:
                 raise self._broken()
+            elif reason == step.FAILED:
+                raise self._failed()
             elif reason == step.COLLAPSED:
                 raise self._collapsed()
             else:
@@ -252,7 +269,7 @@ class Solver:
 
     def _run_kernel(self, until: float, steps: int, pause: float = math.inf) -> int:
         a = self._arrays()
-        p, cures, has = self.problem, self.problem.cures, self._has
+        p, cures, has = self.problem, self._cures, self._has
         solid = p.dimension == 3
         images = self._images if self._mirrored else None
         return int(
@@ -264,9 +281,9 @@ class Solver:
                 self._shape,
                 True if solid else None,
                 a.z if solid else None,
-                None if self._uniform_h else a.h,
-                None if self._uniform_mass else a.mass,
-                a.nearest if p.step_option == 2 else None,
+                None if self._uniform_h or not self._plain else a.h,
+                None if self._uniform_mass or not self._plain else a.mass,
+                a.nearest if p.step_option == 2 and self._plain else None,
                 True if p.dimension == 1 else None,
                 a.cx,
                 self._contact.law,
@@ -294,6 +311,8 @@ class Solver:
                 self._contact.walls,
                 a.wall_slip if has.wall_slip else None,
                 a.contact_heat,
+                True if self._plain else None,
+                self._reference,
                 a,
                 self._numbers,
                 self._laws,
@@ -301,7 +320,7 @@ class Solver:
                 float(until),
                 float(pause),
                 steps,
-                (0.5 * self._skin) ** 2,
+                self._spare**2,
             )[0]
         )
 
@@ -309,7 +328,7 @@ class Solver:
         s = self._state
         positions = {
             f"{axis}{suffix}": s.row(f"x{suffix}", k)
-            for suffix in ("", "_half", "_list")
+            for suffix in ("", "_half", "_list", "_start")
             for k, axis in enumerate("xyz")
         }
         return Arrays(
@@ -364,6 +383,9 @@ class Solver:
             wall_slip=s.rows("wall_slip"),
             colour=s.rows("colour"),
             mobilised=s.rows("mobilised"),
+            deformation=s.rows("deformation"),
+            hourglass=s.rows("hourglass"),
+            nominal=s.rows("nominal"),
         )
 
     def _rebuild(self, *, sort: bool = True) -> None:
@@ -377,9 +399,13 @@ class Solver:
             s.rows("x_list")[:] = s.rows("x")
             if self._has.changing_h:
                 s.rows("h_list")[:] = s.rows("h")
+        self.builds += 1
         n = self.live
         h_max = float(s.rows("h_list" if self._has.changing_h else "h")[0, :n].max())
         radius = h_max * self._shape.support
+        if self._reference is not None:
+            self._relist(radius)
+            return
         rows = s.rows("x_list")
         cells = Cells(n, rows[0], rows[1], rows[2] if s.d == 3 else None, radius + self._skin)
         if sort:
@@ -408,7 +434,15 @@ class Solver:
                     cells, x, y, z, radius=radius, skin=self._skin, h=h, group=group, other=other, threads=self.threads,
                     dummy=s.dummy,
                 )  # fmt: skip
-        self.builds += 1
+
+    def _relist(self, radius: float) -> None:
+        """The lists beside the reference list, of particles that keep their order."""
+        s = self._state
+        h = None
+        if not self._uniform_h:
+            h = s.rows("h_list" if self._has.changing_h else "h")[0] * (0.5 * self._shape.support)
+            radius *= 0.5
+        self._spare = reference.relist(self.problem, s, self._list, self._others, h, radius, self._skin, self.threads)
 
     def _leave(self) -> None:
         """Bring particles that left a periodic box back, and put those beyond a limit behind the others."""
@@ -467,6 +501,17 @@ class Solver:
             int(self._state.id[i]),
             "it moved further than its smoothing length in one step, or its velocity is not a number: the step factor "
             "may be too large, two particles coincide, or the material is stretched apart",
+        )
+
+    def _failed(self) -> Diverged:
+        i = int(self._progress[step.BAD])
+        s = self._state
+        f = np.eye(s.d) + s.rows("deformation")[:, i].reshape(s.d, s.d)
+        return Diverged(
+            self.step,
+            int(s.id[i]),
+            f"its volume is {np.linalg.det(f):.3g} and its greatest stretch {np.linalg.norm(f, 2):.3g} times that of "
+            "the start: a total-Lagrangian body must stay whole, or the step factor is too large",
         )
 
     def _collapsed(self) -> Diverged:

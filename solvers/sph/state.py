@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ..jit import kernel
 from ..threads import run, share
+from .nominal import HOURGLASS
 
 Floats = NDArray[np.float64]
 
@@ -28,7 +29,8 @@ class Arrays(NamedTuple):
     neighbour list; c_first, c_count, c_rows: the list of other bodies; reduced: (threads, .) what each thread found;
     contact_heat: energy that friction and dashpots of the contact took on a particle; slip: elastic slip, how far it
     slid, the load of friction (d + 2, m); wall_slip: the same for each wall; colour: normal to other bodies, mobilised:
-    traction by normal force, (d, m) each (see `slip`).
+    traction by normal force, (d, m) each (see `slip`). Of total-Lagrangian bodies: deformation (d*d): F - I;
+    hourglass: rows of `nominal`; nominal (d*d): V P M^-1 - kappa (F - I)/2.
     """
 
     x: Any
@@ -90,6 +92,12 @@ class Arrays(NamedTuple):
     wall_slip: Any
     colour: Any
     mobilised: Any
+    x_start: Any
+    y_start: Any
+    z_start: Any
+    deformation: Any
+    hourglass: Any
+    nominal: Any
 
 
 class Numbers(NamedTuple):
@@ -144,7 +152,7 @@ class Rows:
 
     state: of the laws; the others say whether: contact, correction, artificial stress, pair viscosity (heat), density
     and stress diffusion, xsph, a changing h, a changing body force, a changing wave speed, heat of contact, slip
-    between bodies, normals; wall_slip: walls with friction.
+    between bodies, normals; wall_slip: walls with friction; total-Lagrangian bodies.
     """
 
     state: int = 0
@@ -162,6 +170,7 @@ class Rows:
     slip: bool = False
     normals: bool = False
     wall_slip: int = 0
+    lagrangian: bool = False
 
 
 class State:
@@ -179,14 +188,18 @@ class State:
         sizes = {
             "x": d, "u": d, "a": d, "x_half": d, "x_list": d, "x_start": d, "stress": six,
             "density": 1, "volume": 1, "mass": 1, "h": 1, "energy": 1, "dissipated": 1, "viscosity": 1,
-            "contact_work": int(has.contact), "artificial_work": int(has.artificial), "heat": int(has.heat),
+            "contact_work": int(has.contact), "artificial_work": int(has.artificial or has.lagrangian),
+            "heat": int(has.heat),
             "h_start": int(has.changing_h), "h_list": int(has.changing_h), "body_work": int(has.body_work),
             "wave": int(has.wave), "b": d if has.artificial else 0, "contact_heat": int(has.contact_heat),
-            "slip": (d + 2) * has.slip, "wall_slip": (d + 2) * has.wall_slip, "state": has.state,
+            "slip": (d + 2) * has.slip, "wall_slip": (d + 2) * has.wall_slip,
+            "deformation": d * d if has.lagrangian else 0, "hourglass": HOURGLASS if has.lagrangian else 0,
+            "state": has.state,
             "gradient": d * d, "s": (d * d if has.correction else 6 if solid else 3), "nearest": 1,
             "c": d if has.contact else 0, "correction": (6 if solid else 3) if has.correction else 0,
             "density_rate": int(has.density_rate), "stress_rate": six if has.stress_rate else 0,
             "smoothed": d if has.xsph else 0, "colour": d * has.normals, "mobilised": d * has.slip,
+            "nominal": d * d if has.lagrangian else 0,
         }  # fmt: skip
         self.slices: dict[str, slice] = {}
         at = 0

@@ -6,7 +6,8 @@ Leap-frog: positions and stresses live at whole steps, velocities at half steps.
     grad v at x - dt v/2, density, rotation, stress, viscosity, energy     strain
     a, nearest distance, contact, the next dt                              force
 `prepare` does the last two once at the start. The original program numbers the same states differently; see `solver`.
-What a scene does not have is None in `advance`'s arguments and is not compiled at all.
+What a scene does not have is None in `advance`'s arguments and is not compiled at all. Bodies of the total-Lagrangian
+formulation (reference) have loops of their own for strain and force; plain: whether there are others.
 """
 
 from __future__ import annotations
@@ -15,7 +16,8 @@ import numpy as np
 
 from ..jit import kernel
 from ..threads import barrier, claim, share
-from . import across, cures, ghosts, pairs, slip, walls
+from . import across, cures, ghosts, lagrangian, pairs, slip, walls
+from .nominal import nominal_stress
 from .particle import critical_step, drift, each_law, half_work, kick
 
 # entries of `progress`, the loop's own memory
@@ -23,7 +25,7 @@ TIME, LAST, NEXT, STEPS, PENDING, FIRST, BAD = range(7)
 PROGRESS = 7
 
 # why `advance` came back
-REACHED, PAUSED, REBUILD, BROKEN, COLLAPSED = range(5)
+REACHED, PAUSED, REBUILD, BROKEN, COLLAPSED, FAILED = range(6)
 
 CHUNK = 256  # particles that a thread takes on at a time
 
@@ -34,13 +36,18 @@ COLLAPSE = 1e-7  # a step this small beside the first one will not recover
 
 
 @kernel
-def strain(i0, i1, shape, solid, h, line, correction, density_rate, stress_rate, arrays, numbers):
+def strain(
+    i0, i1, shape, solid, h, line, correction, density_rate, stress_rate, plain, reference, dt, arrays, numbers
+):  # fmt: skip
     """Velocity gradients of a range of particles, and the rates of diffusion, all with the old densities."""
-    pairs.velocity_gradient(
-        i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.x_half, arrays.y_half, solid, arrays.z_half,
-        arrays.u, arrays.v, arrays.w, arrays.volume, h, numbers.inverse_h2, numbers.scale, line, arrays.gradient,
-        correction,
-    )  # fmt: skip
+    if plain is not None:
+        pairs.velocity_gradient(
+            i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.x_half, arrays.y_half, solid, arrays.z_half,
+            arrays.u, arrays.v, arrays.w, arrays.volume, h, numbers.inverse_h2, numbers.scale, line, arrays.gradient,
+            correction,
+        )  # fmt: skip
+    if reference is not None:
+        lagrangian.deformation(i0, i1, solid, dt, reference, arrays)
     if density_rate is not None:
         cures.density_diffusion(
             i0, i1, solid, shape, arrays.x_half, arrays.y_half, arrays.z_half, arrays, numbers,
@@ -55,7 +62,7 @@ def strain(i0, i1, shape, solid, h, line, correction, density_rate, stress_rate,
 
 @kernel
 def force(i0, i1, shape, z, h, mass, nearest, line, cx, contact, mixed, correction, bx, artificial, heat, body_work,
-          wave, friction, damping, normals, by_normals, planes, wall_slip, contact_heat, dt, arrays,
+          wave, friction, damping, normals, by_normals, planes, wall_slip, contact_heat, plain, reference, dt, arrays,
           numbers):  # fmt: skip
     """Accelerations of a range of particles; returns their critical step."""
     if mixed is not None:
@@ -66,11 +73,15 @@ def force(i0, i1, shape, z, h, mass, nearest, line, cx, contact, mixed, correcti
         weight = mass
         density = None
         scale = numbers.force_scale
-    pairs.momentum(
-        i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.x, arrays.y, z, arrays.s, weight, h,
-        numbers.inverse_h2, scale, line, numbers.body, arrays.ax, arrays.ay, arrays.az, nearest, density, correction,
-        artificial, numbers.inverse_w, bx, arrays.by, arrays.bz,
-    )  # fmt: skip
+    if plain is not None:
+        pairs.momentum(
+            i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.x, arrays.y, z, arrays.s, weight, h,
+            numbers.inverse_h2, scale, line, numbers.body, arrays.ax, arrays.ay, arrays.az, nearest, density,
+            correction, artificial, numbers.inverse_w, bx, arrays.by, arrays.bz,
+        )  # fmt: skip
+    longest = np.inf
+    if reference is not None:
+        longest = lagrangian.internal_force(i0, i1, z, plain, reference, arrays, numbers)
     if heat is not None:
         cures.pair_viscosity(i0, i1, z, shape, arrays, numbers, heat)
     least = np.inf
@@ -85,7 +96,7 @@ def force(i0, i1, shape, z, h, mass, nearest, line, cx, contact, mixed, correcti
     half_work(i0, i1, z, cx, bx, body_work, dt, arrays, numbers)
     if numbers.original:
         least = np.inf
-    return min(least, critical_step(i0, i1, z, wave, numbers, arrays))
+    return min(longest, least, critical_step(i0, i1, z, wave, numbers, arrays))
 
 
 @kernel
@@ -104,7 +115,7 @@ def advance(
     thread, threads, sync, n, offset, shape, solid, z, h, mass, nearest, line, cx, contact, mixed, correction, bx,
     artificial, h_list, h_start, density_rate, stress_rate, heat, smoothed, smoothing, body_work, wave,
     image_source, image_sign, image_shift, mirrors, friction, damping, normals, by_normals, planes, wall_slip,
-    contact_heat, arrays, numbers, laws, progress, until, pause, steps, reach2,
+    contact_heat, plain, reference, arrays, numbers, laws, progress, until, pause, steps, reach2,
 ):  # fmt: skip
     """Take up to `steps` steps towards `until`, each thread for its own range; returns why it stopped.
 
@@ -135,7 +146,7 @@ def advance(
                 while c < chunks:
                     strain(
                         c * chunk, min(n, (c + 1) * chunk), shape, solid, h, line, correction, density_rate,
-                        stress_rate, arrays, numbers,
+                        stress_rate, plain, reference, last, arrays, numbers,
                     )  # fmt: skip
                     c = claim(sync, taken)
                 taken += chunks + threads
@@ -145,9 +156,16 @@ def advance(
                 laws, 0, i0, i1, z, max(last, INSTANT), correction, density_rate, stress_rate, heat, wave, arrays,
                 numbers,
             )  # fmt: skip
+            if reference is not None:
+                arrays.reduced[thread, 3] = nominal_stress(i0, i1, z, reference, arrays)
             for i in range(i0, i1):
                 arrays.volume[i] = arrays.mass[i] / arrays.density[i]
             barrier(sync, threads)
+            if reference is not None:
+                bad = arrays.reduced[:threads, 3].max()
+                if bad >= 0.0:
+                    reason = FAILED
+                    break
             if image_source is not None:
                 g0, g1 = share(len(image_source), thread, threads)
                 ghosts.follow_stress(g0, g1, offset, z, correction, image_source, image_sign, arrays)
@@ -167,7 +185,7 @@ def advance(
                 part = force(
                     c * chunk, min(n, (c + 1) * chunk), shape, z, h, mass, nearest, line, cx, contact, mixed,
                     correction, bx, artificial, heat, body_work, wave, friction, damping, normals, by_normals,
-                    planes, wall_slip, contact_heat, last, arrays, numbers,
+                    planes, wall_slip, contact_heat, plain, reference, last, arrays, numbers,
                 )  # fmt: skip
                 least = min(least, part)
                 c = claim(sync, taken)
@@ -233,6 +251,6 @@ def advance(
         progress[NEXT] = dt
         progress[STEPS] += done
         progress[PENDING] = 1.0 if pending else 0.0
-        if reason == BROKEN:
+        if reason in (BROKEN, FAILED):
             progress[BAD] = bad
     return reason
