@@ -145,11 +145,19 @@ def _body(model: Model, material: Material, repulsion: tuple[float, float], meth
         most=given(material.rho_max, MOST_DENSITY),
         strength=repulsion[0],
         exponent=repulsion[1],
+        lagrangian=_stays_whole(material, method),
+        hourglass=method.hourglass,
         alpha=pair.alpha if pair else 0.0,
         beta=pair.beta if pair else 0.0,
         density_diffusion=(defaults.density_diffusion(law) if automatic else 0.0) if density is None else density,
         stress_diffusion=(defaults.stress_diffusion(law) if automatic else 0.0) if stress is None else stress,
     )
+
+
+def _stays_whole(material: Material, method: Sph) -> bool:
+    """Whether a material's body is total-Lagrangian."""
+    named = method.total_lagrangian
+    return named if isinstance(named, bool) else material.name in named
 
 
 def _law(model: Model, material: Material) -> Law:

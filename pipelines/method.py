@@ -46,7 +46,9 @@ class Wall(Section):
 class Sph(Section):
     """Numerics of smoothed particles; None is what the deck says, or by material where `cures` is auto.
 
-    acceleration: rows of time and base acceleration in x, y, z, linear between them, in place of the deck's.
+    total_lagrangian: all bodies, or those of these names, move with the neighbours of their start; hourglass: what
+    holds their hourglass modes, a share of Young's modulus. acceleration: rows of time and base acceleration in x, y,
+    z, linear between them, in place of the deck's.
     """
 
     kernel: Literal["cubic", "quintic", "lucy", "gaussian", "wendland_c2", "wendland_c4"] = "cubic"
@@ -57,6 +59,8 @@ class Sph(Section):
     stress_diffusion: Part | None = None
     xsph: Part | None = None
     pair_viscosity: PairViscosity | None = None
+    total_lagrangian: bool | list[str] = False
+    hourglass: Part = 0.8
     contact: Contact = Field(default_factory=Contact)
     walls: list[Wall] = Field(default_factory=list)
     acceleration: Annotated[list[Row], Field(min_length=2)] | None = None

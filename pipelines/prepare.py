@@ -76,10 +76,14 @@ def prepare(
             places = command_options.apply(chosen.settings, model)
         digest = {str(deck): next(iter(digests([draft.path if draft else deck]).values()))}
         method = scene.sph if scene else of_options({k: v for k, v in chosen.scene.items() if k.startswith("sph.")})
-        problem = particle_problem(
-            model, str(deck), places=places, original=chosen.run.get("compat") == "original", method=method
-        )
-        solver = Solver(problem, threads=threads)
+        original = chosen.run.get("compat") == "original"
+        try:
+            problem = particle_problem(model, str(deck), places=places, original=original, method=method)
+            solver = Solver(problem, threads=threads)
+        except ValueError as error:  # things that do not go together
+            if isinstance(error, InputError):
+                raise
+            raise InputError([Fault(str(deck), 1, 1, str(error))]) from error
         state = load_latest(directory, inputs=digest) if resume else None
         if state is not None:
             solver.restore(dict(state))

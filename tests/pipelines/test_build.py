@@ -164,6 +164,15 @@ def test_the_friction_of_a_deck_needs_bodies_that_repel(tmp_path: Path) -> None:
     assert repelling.bodies[0].strength == 10.0
 
 
+def test_bodies_that_stay_whole_are_named(tmp_path: Path) -> None:
+    model = _read(tmp_path)
+    assert not particle_problem(model, "deck.mcm").bodies[0].lagrangian
+    body = particle_problem(model, "deck.mcm", method=Sph(total_lagrangian=["steel"], hourglass=0.3)).bodies[0]
+    assert (body.lagrangian, body.hourglass) == (True, 0.3)
+    assert particle_problem(model, "deck.mcm", method=Sph(total_lagrangian=True)).bodies[0].lagrangian
+    assert not particle_problem(model, "deck.mcm", method=Sph(total_lagrangian=["brass"])).bodies[0].lagrangian
+
+
 def test_two_bodies_have_the_friction_that_deck_or_scene_says(tmp_path: Path) -> None:
     (tmp_path / "two.mcm").write_text(TWO)
     model = read(tmp_path / "two.mcm")
