@@ -23,7 +23,7 @@ class Body:
     number: of the deck; law: of `zrno.solvers.materials`; density [mass/length^3]; linear, quadratic: artificial
     viscosity by the rate of volume [-]; least, most: limits of the density; strength, exponent: of the repulsive
     contact; alpha, beta: of Monaghan's pair viscosity [-]; density_diffusion: delta-SPH for fluids (0.1);
-    stress_diffusion: regularised stress of grain (0.1).
+    stress_diffusion: regularised stress of grain (0.1); wall: held particles that bear their neighbours' stress.
     """
 
     number: int
@@ -40,6 +40,7 @@ class Body:
     beta: float = 0.0
     density_diffusion: float = 0.0
     stress_diffusion: float = 0.0
+    wall: bool = False
 
 
 @dataclass(frozen=True, slots=True)
