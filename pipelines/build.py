@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from zrno.pipelines import contact
-from zrno.pipelines.laws import initial_energy, law_of
+from zrno.pipelines.laws import initial_energy, law_of, soil_of
 from zrno.pipelines.method import Sph
 from zrno.solvers.errors import Unsupported
 from zrno.solvers.materials import Law
@@ -24,6 +24,7 @@ _FIXED = np.array(
 
 STEP_FACTOR = 0.8
 QUADRATIC, LINEAR = 1.5, 0.06  # artificial viscosity where the deck leaves it blank
+HELD = 7  # boundary code of particles that do not move
 XSPH = 0.1  # the original program's factor
 LEAST_DENSITY, MOST_DENSITY = 1e-10, 1e10
 
@@ -42,7 +43,7 @@ def particle_problem(
 
     Raises InputError for what the deck asks and this solver does not do.
     """
-    wrong, missing = refusals(model, path, places)
+    wrong, missing = refusals(model, path, places, method)
     if wrong or missing:
         raise InputError(sorted(wrong + missing))
     control, particles = model.particle_control, model.particles
@@ -131,7 +132,7 @@ def _body(model: Model, material: Material, repulsion: tuple[float, float], meth
     def given(value: float | None, default: float) -> float:
         return value if value else default
 
-    law = _law(model, material)
+    law = _law(model, material, method)
     automatic = method.cures == "auto"
     density, stress, pair = method.density_diffusion, method.stress_diffusion, method.pair_viscosity
     return Body(
@@ -149,6 +150,7 @@ def _body(model: Model, material: Material, repulsion: tuple[float, float], meth
         hourglass=method.hourglass,
         alpha=pair.alpha if pair else 0.0,
         beta=pair.beta if pair else 0.0,
+        bearing=_name(material) in method.bearing,
         density_diffusion=(defaults.density_diffusion(law) if automatic else 0.0) if density is None else density,
         stress_diffusion=(defaults.stress_diffusion(law) if automatic else 0.0) if stress is None else stress,
     )
@@ -157,21 +159,31 @@ def _body(model: Model, material: Material, repulsion: tuple[float, float], meth
 def _stays_whole(material: Material, method: Sph) -> bool:
     """Whether a material's body is total-Lagrangian."""
     named = method.total_lagrangian
-    return named if isinstance(named, bool) else material.name in named
+    return named if isinstance(named, bool) else _name(material) in named
 
 
-def _law(model: Model, material: Material) -> Law:
+def _law(model: Model, material: Material, method: Sph) -> Law:
+    said = method.laws.get(_name(material))
+    if said is not None:
+        return soil_of(material, said)
     return law_of(material, _eos(model, material), model.curves)
+
+
+def _name(material: Material) -> str:
+    return material.name.removeprefix("part ")
 
 
 def _eos(model: Model, material: Material) -> Eos | None:
     return None if material.eos is None else model.equations_of_state.get(material.eos)
 
 
-def refusals(model: Model, path: str, places: Mapping[str, Place] | None = None) -> tuple[list[Fault], list[Fault]]:
+def refusals(
+    model: Model, path: str, places: Mapping[str, Place] | None = None, method: Sph | None = None
+) -> tuple[list[Fault], list[Fault]]:
     """What is wrong with a particle deck that its reader cannot know, and what this solver does not do yet.
 
-    path: of the deck. places: where a control field (`h_option`) or a material (`material 1`) was said, if not in it.
+    path: of the deck. method: the scene's. places: where a control field (`h_option`) or a material (`material 1`) was
+    said, if not in it.
     """
     if model.particle_control is None or model.particles is None:
         return [Fault(path, 1, 1, "not a particle deck", model.format, "a .mcm deck")], []
@@ -183,15 +195,34 @@ def refusals(model: Model, path: str, places: Mapping[str, Place] | None = None)
         at = where.get(field, Place(path, 1, 1))
         missing.append(Fault(at.path, at.line, at.column, f"{message} is not computed yet", said, "a deck without it"))
     wrong += _probes_of_nothing(model, path)
+    method = method or Sph()
+    wrong += _wrong_names(model, path, method)
     for number, material in sorted(model.materials.items()):
         at = where.get(f"material {number}", Place(path, material.source.line if material.source else 1, 1))
         try:
-            _law(model, material)
+            _law(model, material, method)
         except Unsupported as error:
             missing.append(Fault(at.path, at.line, at.column, f"material {number}: {error}", "", "a deck without it"))
         except ValueError as error:
             wrong.append(Fault(at.path, at.line, at.column, f"material {number}: {error}", "", "constants of the law"))
     return wrong, missing
+
+
+def _wrong_names(model: Model, path: str, method: Sph) -> list[Fault]:
+    """Materials that the scene names and that there are not, and walls that are not held."""
+    assert model.particles is not None
+    names = [_name(material) for material in model.materials.values()]
+    faults = []
+    for key, given in (("laws", list(method.laws)), ("bearing", method.bearing)):
+        for name in given:
+            if name not in names:
+                faults.append(Fault(path, 1, 1, f"sph.{key}: no such material", name, ", ".join(names)))
+    for number, material in model.materials.items():
+        free = int(np.count_nonzero(model.particles.bc[model.particles.material == number] != HELD))
+        if _name(material) in method.bearing and free:
+            said = f"{free} free particles of {_name(material)}"
+            faults.append(Fault(path, 1, 1, "sph.bearing: a wall moves", said, "bc: xyz of the material"))
+    return faults
 
 
 def _probes_of_nothing(model: Model, path: str) -> list[Fault]:

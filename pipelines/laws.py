@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 
+from zrno.pipelines.method import Soil
 from zrno.solvers import materials as laws
 from zrno.solvers.errors import Unsupported
 from zrno.solvers.materials import Law
@@ -32,6 +33,16 @@ def law_of(material: Material, eos: Eos | None, curves: Mapping[int, Curve]) -> 
     if material.law in ("fluid", "hydro"):
         state = _equation_of_state(eos, material)
     return build(material.parameters, hardening_table(material, curves), state)
+
+
+def soil_of(material: Material, said: Soil) -> Law:
+    """The soil that a scene says, with the moduli of the deck's elastic material."""
+    if material.law != "elastic":
+        raise ValueError(f"a soil takes E and nu of an elastic material, this one is {material.law}")
+    young, poisson = material.parameters["E"], material.parameters["nu"]
+    if said.law == "mohr_coulomb":
+        return laws.mohr_coulomb(young, poisson, said.c, said.phi, said.psi)
+    return laws.drucker_prager_soil(young, poisson, said.c, said.phi, said.psi, match=said.match)
 
 
 def initial_energy(eos: Eos | None, density: float) -> float:

@@ -11,6 +11,7 @@ from zrno.pipelines.sections import Friction, NotNegative, Positive, Section
 from zrno.translators.text import Fault, InputError
 
 Part = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
+Angle = Annotated[float, Field(ge=0, lt=90, allow_inf_nan=False)]
 Row = Annotated[list[float], Field(min_length=4, max_length=4)]
 
 
@@ -43,12 +44,26 @@ class Wall(Section):
     friction: Friction | None = None
 
 
+class Soil(Section):
+    """A law that the deck has no card for. c: cohesion [pressure]; phi, psi: angles [degrees]; E and nu are the deck's.
+
+    match: in which test the cone of Drucker and Prager is as strong as Mohr and Coulomb's hexagon.
+    """
+
+    law: Literal["drucker_prager_soil", "mohr_coulomb"]
+    c: NotNegative = 0.0
+    phi: Angle
+    psi: Angle = 0.0
+    match: Literal["compression", "extension", "plane_strain"] = "compression"
+
+
 class Sph(Section):
     """Numerics of smoothed particles; None is what the deck says, or by material where `cures` is auto.
 
     total_lagrangian: all bodies, or those of these names, move with the neighbours of their start; hourglass: what
     holds their hourglass modes, a share of Young's modulus. acceleration: rows of time and base acceleration in x, y,
-    z, linear between them, in place of the deck's.
+    z, linear between them, in place of the deck's. laws: by the name of the deck's material, in place of the elastic
+    one there. bearing: names of materials whose particles, all held, bear the stress of what leans on them.
     """
 
     kernel: Literal["cubic", "quintic", "lucy", "gaussian", "wendland_c2", "wendland_c4"] = "cubic"
@@ -64,6 +79,8 @@ class Sph(Section):
     contact: Contact = Field(default_factory=Contact)
     walls: list[Wall] = Field(default_factory=list)
     acceleration: Annotated[list[Row], Field(min_length=2)] | None = None
+    laws: dict[str, Soil] = Field(default_factory=dict)
+    bearing: list[str] = Field(default_factory=list)
 
 
 def of_options(options: Mapping[str, Any]) -> Sph:

@@ -22,11 +22,26 @@ def _volume_factor(mean, dimension):
 
 
 @kernel
-def density_diffusion(i0, i1, z, shape, x, y, zs, arrays, numbers, rate):
+def _drop(i, j, offset, source, z, x, y, zs, body):
+    """g.(x_i - x_j) and its parts along the axes; of an image as far as its source: what lies beyond a plane is as
+    deep as what it mirrors."""
+    if source is not None and offset <= j < offset + len(source):  # the dummy that pads the lists stands behind
+        j = source[j - offset]
+    gx = body[0] * (x[i] - x[j])
+    gy = body[1] * (y[i] - y[j])
+    gz = 0.0
+    if z is not None:
+        gz = body[2] * (zs[i] - zs[j])
+    return gx + gy + gz, gx, gy, gz
+
+
+@kernel
+def density_diffusion(i0, i1, offset, source, z, shape, x, y, zs, arrays, numbers, rate):
     """rate_i = factor h c sum_j 2 V_j (rho_j - rho_i - rho_i g.(x_j - x_i)/c^2)(x_j - x_i).grad_i W_ij / r^2.
 
     Delta-SPH (Molteni & Colagrossi 2009) with the hydrostatic part taken out (Fourtakas et al. 2019), so that a column
-    at rest keeps its surface; among particles of one material, which has a factor of its own.
+    at rest keeps its surface; among particles of one material, which has a factor of its own. offset, source: of the
+    images, None without.
     """
     body = numbers.body
     for i in range(i0, i1):
@@ -47,11 +62,10 @@ def density_diffusion(i0, i1, z, shape, x, y, zs, arrays, numbers, rate):
             dx = x[i] - x[j]
             dy = y[i] - y[j]
             r2 = dx * dx + dy * dy
-            head = body[0] * dx + body[1] * dy
+            head = _drop(i, j, offset, source, z, x, y, zs, body)[0]
             if z is not None:
                 dz = zs[i] - zs[j]
                 r2 += dz * dz
-                head += body[2] * dz
             q2 = r2 / (mean * mean) + TINY
             iq = inverse_root(q2)
             slope = shape_slope(shape, q2 * iq, iq) * _volume_factor(mean, numbers.dimension) / (mean * mean)
@@ -60,13 +74,17 @@ def density_diffusion(i0, i1, z, shape, x, y, zs, arrays, numbers, rate):
 
 
 @kernel
-def stress_diffusion(i0, i1, z, shape, x, y, zs, arrays, numbers, rate):
+def stress_diffusion(i0, i1, offset, source, z, shape, x, y, zs, arrays, numbers, rate):
     """rate_i = factor h c sum_j 2 V_j (sigma_j - sigma_i - head)(x_j - x_i).grad_i W_ij / r^2, all components.
 
     Regularises the stress of grain (Nguyen et al. 2017; Feng et al. 2021), which else falls apart into stripes. head:
-    -rho g_a (x_j - x_i)_a on the normal stress along axis a, what gravity alone makes of it; among one material.
+    what gravity makes of the normal stress along axis a, -rho (g_a x_a + K g_b x_b) with x = x_j - x_i, b the other
+    axes and K the pair's ratio of that stress to the one along g, between 0 and 1: without it the lateral stress of
+    grain at rest spreads out evenly over its depth. Among one material; images as in `density_diffusion`.
     """
     body = numbers.body
+    gravity2 = body[0] ** 2 + body[1] ** 2 + body[2] ** 2
+    inverse_g2 = 1.0 / gravity2 if gravity2 > 0.0 else 0.0
     stress = arrays.stress
     for i in range(i0, i1):
         m = arrays.material[i]
@@ -96,12 +114,20 @@ def stress_diffusion(i0, i1, z, shape, x, y, zs, arrays, numbers, rate):
             iq = inverse_root(q2)
             slope = shape_slope(shape, q2 * iq, iq) * _volume_factor(mean, numbers.dimension) / (mean * mean)
             slope *= -arrays.volume[j]
-            t_xx += slope * (stress[0, j] - stress[0, i] - rho * body[0] * dx)
-            t_yy += slope * (stress[1, j] - stress[1, i] - rho * body[1] * dy)
-            t_zz += slope * (stress[2, j] - stress[2, i])
+            drop, gx, gy, gz = _drop(i, j, offset, source, z, x, y, zs, body)
+            p_xx = stress[0, i] + stress[0, j]
+            p_yy = stress[1, i] + stress[1, j]
+            p_zz = stress[2, i] + stress[2, j]
+            down = (p_xx * body[0] ** 2 + p_yy * body[1] ** 2 + p_zz * body[2] ** 2) * inverse_g2
+            inverse = 1.0 / down if down < 0.0 else 0.0
+            gx += min(max(p_xx * inverse, 0.0), 1.0) * (drop - gx)
+            gy += min(max(p_yy * inverse, 0.0), 1.0) * (drop - gy)
+            gz += min(max(p_zz * inverse, 0.0), 1.0) * (drop - gz)
+            t_xx += slope * (stress[0, j] - stress[0, i] - rho * gx)
+            t_yy += slope * (stress[1, j] - stress[1, i] - rho * gy)
+            t_zz += slope * (stress[2, j] - stress[2, i] - rho * gz)
             t_xy += slope * (stress[3, j] - stress[3, i])
             if z is not None:
-                t_zz -= slope * rho * body[2] * dz
                 t_yz += slope * (stress[4, j] - stress[4, i])
                 t_zx += slope * (stress[5, j] - stress[5, i])
         scale = 2.0 * factor * arrays.h[i] * numbers.wave[m] * numbers.normal

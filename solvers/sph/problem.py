@@ -26,7 +26,8 @@ class Body:
     viscosity by the rate of volume [-]; least, most: limits of the density; strength, exponent: of the repulsive
     contact; alpha, beta: of Monaghan's pair viscosity [-]; density_diffusion: delta-SPH for fluids (0.1);
     stress_diffusion: regularised stress of grain (0.1). lagrangian: the total-Lagrangian formulation, for a body that
-    stays whole; hourglass: the share of Young's modulus that resists hourglass modes, 0 .. 1.
+    stays whole; hourglass: the share of Young's modulus that resists hourglass modes, 0 .. 1. bearing: held particles
+    that bear their neighbours' stress.
     """
 
     number: int
@@ -45,6 +46,7 @@ class Body:
     stress_diffusion: float = 0.0
     lagrangian: bool = False
     hourglass: float = 0.8
+    bearing: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -54,6 +54,7 @@ class Solver:
         self._plain = not all(b.lagrangian for b in problem.bodies)
         cures = self._cures = problem.cures if self._plain else Cures()
         self._heats = any(b.alpha or b.beta for b in problem.bodies)
+        self._walled = any(b.bearing for b in problem.bodies)
         has = Rows(
             state=max(state_rows(b.law) for b in problem.bodies),
             contact=problem.apart or bool(problem.walls),
@@ -134,6 +135,7 @@ class Solver:
             density_diffusion=np.array([b.density_diffusion for b in p.bodies]),
             stress_diffusion=np.array([b.stress_diffusion for b in p.bodies]),
             least_distance=0.0 if self._mirrors is None else IMAGE,
+            wall=np.array([b.density if b.bearing else 0.0 for b in p.bodies]),
             inverse_w=1.0 / value_at(self._shape, spacing),
             step_option=p.step_option,
             step_factor=p.step_factor,
@@ -213,6 +215,7 @@ class Solver:
             "stress diffusion": self._has.stress_rate,
             f"XSPH {cures.xsph:g}": cures.xsph > 0.0,
             "pair viscosity": self._heats,
+            "walls that bear their neighbours' stress": self._walled,
             f"h option {p.h_option}": p.h_option != 0,
             f"dynamic relaxation {p.relaxation:g}": p.relaxation != 1.0,
             f"{len(p.planes)} boundary plane(s)": bool(p.planes),
@@ -300,6 +303,7 @@ class Solver:
                 cures.xsph,
                 a.body_work,
                 a.wave,
+                True if self._walled else None,
                 None if images is None else images.source,
                 None if images is None else images.sign,
                 None if images is None else images.shift,

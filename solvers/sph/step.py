@@ -16,7 +16,7 @@ import numpy as np
 
 from ..jit import kernel
 from ..threads import barrier, claim, share
-from . import across, cures, ghosts, lagrangian, pairs, slip, walls
+from . import across, bearing, cures, ghosts, lagrangian, pairs, slip, walls
 from .nominal import nominal_stress
 from .particle import critical_step, drift, each_law, half_work, kick
 
@@ -37,7 +37,8 @@ COLLAPSE = 1e-7  # a step this small beside the first one will not recover
 
 @kernel
 def strain(
-    i0, i1, shape, solid, h, line, correction, density_rate, stress_rate, plain, reference, dt, arrays, numbers
+    i0, i1, offset, source, shape, solid, h, line, correction, density_rate, stress_rate, plain, reference, dt, arrays,
+    numbers,
 ):  # fmt: skip
     """Velocity gradients of a range of particles, and the rates of diffusion, all with the old densities."""
     if plain is not None:
@@ -50,12 +51,12 @@ def strain(
         lagrangian.deformation(i0, i1, solid, dt, reference, arrays)
     if density_rate is not None:
         cures.density_diffusion(
-            i0, i1, solid, shape, arrays.x_half, arrays.y_half, arrays.z_half, arrays, numbers,
+            i0, i1, offset, source, solid, shape, arrays.x_half, arrays.y_half, arrays.z_half, arrays, numbers,
             density_rate,
         )  # fmt: skip
     if stress_rate is not None:
         cures.stress_diffusion(
-            i0, i1, solid, shape, arrays.x_half, arrays.y_half, arrays.z_half, arrays, numbers,
+            i0, i1, offset, source, solid, shape, arrays.x_half, arrays.y_half, arrays.z_half, arrays, numbers,
             stress_rate,
         )  # fmt: skip
 
@@ -114,7 +115,7 @@ def body_force_at(time, numbers):
 def advance(
     thread, threads, sync, n, offset, shape, solid, z, h, mass, nearest, line, cx, contact, mixed, correction, bx,
     artificial, h_list, h_start, density_rate, stress_rate, heat, smoothed, smoothing, body_work, wave,
-    image_source, image_sign, image_shift, mirrors, friction, damping, normals, by_normals, planes, wall_slip,
+    walled, image_source, image_sign, image_shift, mirrors, friction, damping, normals, by_normals, planes, wall_slip,
     contact_heat, plain, reference, arrays, numbers, laws, progress, until, pause, steps, reach2,
 ):  # fmt: skip
     """Take up to `steps` steps towards `until`, each thread for its own range; returns why it stopped.
@@ -145,8 +146,8 @@ def advance(
                 c = claim(sync, taken)
                 while c < chunks:
                     strain(
-                        c * chunk, min(n, (c + 1) * chunk), shape, solid, h, line, correction, density_rate,
-                        stress_rate, plain, reference, last, arrays, numbers,
+                        c * chunk, min(n, (c + 1) * chunk), offset, image_source, shape, solid, h, line, correction,
+                        density_rate, stress_rate, plain, reference, last, arrays, numbers,
                     )  # fmt: skip
                     c = claim(sync, taken)
                 taken += chunks + threads
@@ -167,6 +168,13 @@ def advance(
                     reason = FAILED
                     break
             if image_source is not None:
+                g0, g1 = share(len(image_source), thread, threads)
+                ghosts.follow_stress(g0, g1, offset, z, correction, image_source, image_sign, arrays)
+                barrier(sync, threads)
+            if walled is not None:
+                bearing.bear(i0, i1, z, shape, correction, last, arrays, numbers)
+                barrier(sync, threads)
+            if walled is not None and image_source is not None:
                 g0, g1 = share(len(image_source), thread, threads)
                 ghosts.follow_stress(g0, g1, offset, z, correction, image_source, image_sign, arrays)
                 barrier(sync, threads)

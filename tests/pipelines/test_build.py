@@ -12,6 +12,7 @@ from zrno.pipelines.method import Contact, Sph, Wall, of_options
 from zrno.pipelines.sections import Friction
 from zrno.solvers.contact import plane
 from zrno.solvers.contact.friction import Coulomb
+from zrno.solvers.materials import drucker_prager_soil
 from zrno.solvers.sph import Cures, Plane
 from zrno.solvers.sph.ghosts import SYMMETRY
 from zrno.translators import InputError, Model, read
@@ -197,6 +198,28 @@ def test_two_bodies_have_the_friction_that_deck_or_scene_says(tmp_path: Path) ->
 def test_a_method_that_there_is_not_is_bad_input(key: str, value: object, message: str) -> None:
     with pytest.raises(InputError, match=message):
         of_options({key: value})
+
+
+def test_a_soil_takes_the_moduli_of_the_deck_and_a_wall_is_held(tmp_path: Path) -> None:
+    model = _read(tmp_path)
+    name = model.materials[1].name
+    model.materials[1].law = "elastic"
+    assert model.particles is not None
+    soil = {"law": "drucker_prager_soil", "phi": 30, "c": 2.0, "match": "plane_strain"}
+    model.particles.bc[:] = 7
+    body = particle_problem(
+        model, "deck.mcm", method=of_options({f"sph.laws.{name}": soil, "sph.bearing": [name]})
+    ).bodies[0]
+    own = model.materials[1].parameters
+    assert body.law == drucker_prager_soil(own["E"], own["nu"], 2.0, 30.0, match="plane_strain")
+    assert body.bearing
+    model.particles.bc[0] = 0
+    said = of_options({"sph.laws.clay": soil, "sph.bearing": [name, "rock"]})
+    with pytest.raises(InputError) as caught:
+        particle_problem(model, "deck.mcm", method=said)
+    assert sorted(fault.message for fault in caught.value.faults) == [
+        "sph.bearing: a wall moves", "sph.bearing: no such material", "sph.laws: no such material",
+    ]  # fmt: skip
 
 
 def test_all_refusals_are_said_and_a_mesh_is_no_deck(tmp_path: Path) -> None:
