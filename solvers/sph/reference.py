@@ -94,7 +94,7 @@ def check(p: Problem) -> None:
     wrong = {
         "boundary planes": bool(p.planes),
         "the arithmetic of the original program": p.original,
-        "kernel contact (set potential)": len(p.bodies) > 1 and not p.potential,
+        "kernel contact between bodies (the contact potential it does)": len(np.unique(p.body)) > 1 and not p.potential,
     }
     for body in p.bodies:
         if body.lagrangian:
@@ -103,6 +103,8 @@ def check(p: Problem) -> None:
                 "pair viscosity" + named: bool(body.alpha or body.beta),
                 "density or stress diffusion" + named: bool(body.density_diffusion or body.stress_diffusion),
             }
+            if not getattr(body.law, "shear", 0.0) > 0.0:
+                raise ValueError(f"body {body.name} has no shear stiffness: it does not stay whole")
             if not 0.0 <= body.hourglass <= 1.0:
                 raise ValueError(f"the hourglass factor {body.hourglass!r} of body {body.name} must lie within 0 .. 1")
     for name, there in wrong.items():

@@ -469,7 +469,8 @@ PLANE = Plane(axis=0, side=-1, kind=SYMMETRY, position=0.0)
     [
         ({"planes": (PLANE,)}, "planes"),
         ({"original": True}, "original"),
-        ({"bodies": (BODY, BODY)}, "kernel contact"),
+        ({"bodies": (BODY, BODY), "body": np.arange(36) // 18}, "kernel contact"),
+        ({"bodies": (dataclasses.replace(BODY, law=Elastic(1.0, 0.0)),)}, "shear"),
         ({"bodies": (dataclasses.replace(BODY, alpha=0.1),)}, "pair viscosity"),
         ({"bodies": (dataclasses.replace(BODY, stress_diffusion=0.1),)}, "diffusion"),
         ({"bodies": (dataclasses.replace(BODY, hourglass=2.0),)}, "hourglass"),
