@@ -185,8 +185,8 @@ def refusals(
     wrong += _probes_of_nothing(model, path)
     method = method or Sph()
     names = [_name(material) for material in model.materials.values()]
-    for key, said in (("laws", list(method.laws)), ("walls", method.walls)):
-        for name in said:
+    for key, chosen in (("laws", list(method.laws)), ("walls", method.walls)):
+        for name in chosen:
             if name not in names:
                 wrong.append(Fault(path, 1, 1, f"sph.{key}: no such material", name, ", ".join(names)))
     for number, material in model.materials.items():
