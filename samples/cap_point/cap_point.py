@@ -54,7 +54,7 @@ def triaxial(confining: float, strain: float = 0.3, steps: int = 600) -> Answer:
 
 
 def strength(confining: float) -> float:
-    """Axial less lateral stress at which (difference)/sqrt(3) = alpha - gamma exp(-beta I), I = 3 confining + difference."""
+    """Axial less lateral stress q where the path I = 3 confining + q meets q / sqrt(3) = alpha - gamma exp(-beta I)."""
     low, high = 0.0, 10.0 * ALPHA
     for _ in range(100):
         middle = 0.5 * (low + high)

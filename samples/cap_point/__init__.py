@@ -1,0 +1,1 @@
+"""The cap model at a point: a script, see `cap_point`."""
