@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 from typing import Any
 
@@ -9,7 +10,8 @@ import numpy as np
 import pytest
 from sph_scenes import ELASTIC, finished, impact, jittered, lattice, one_body, periodic
 
-from zrno.solvers.sph import Cures, Problem, Solver, pairs, particle
+from zrno.solvers.sph import Cures, Plane, Problem, Solver, pairs, particle
+from zrno.solvers.sph.ghosts import SYMMETRY
 from zrno.solvers.sph.step import INSTANT
 
 
@@ -166,6 +168,45 @@ def test_stress_diffusion_smooths_stripes_and_keeps_the_mean() -> None:
     assert spreads[0] == pytest.approx(1e-3)
     assert spreads[1] < 1e-4
     assert means == pytest.approx([0.0, 0.0], abs=1e-12)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_stress_diffusion_leaves_grain_at_rest_on_a_plane_alone(dimension: int) -> None:
+    """Vertical stress rho g z, half of it sideways; up to the free surface, and to the plane with its images."""
+    x = lattice((8, 10, 5)[:dimension], (0.0,) * dimension)
+    low = float(x[:, 1].min()) - 0.05
+    depth = low + 1.0 - x[:, 1]
+    problem = one_body(
+        x, dimension=dimension, planes=(Plane(1, -1, SYMMETRY, low),), body={"stress_diffusion": 0.1},
+        fixed=np.ones((len(x), 3), bool), body_force=(0.0, -2e-3, 0.0),
+        stress=np.outer(-2e-3 * depth, [0.5, 1.0, 0.5, 0.0, 0.0, 0.0]),
+    )  # fmt: skip
+    stress = finished(problem, 1.0).frame().particles["stress"]
+    assert np.abs(stress[:, 1] + 2e-3 * depth).max() < 1e-9
+    assert np.abs(stress[:, [0, 2]] + 1e-3 * depth[:, None]).max() < 1e-9
+
+
+@pytest.mark.parametrize("correction", [False, True])
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_wall_bears_the_stress_of_what_lies_on_it(dimension: int, correction: bool) -> None:
+    """rho g z goes on into the wall, shear as it is, and the wall keeps its density."""
+    x = lattice((8, 10, 5)[:dimension], (0.0,) * dimension)
+    wall = x[:, 1] < x[:, 1].min() + 0.25
+    depth = x[:, 1].max() - x[:, 1]
+    stress = np.outer(-2e-3 * depth, [1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
+    stress[:, 3] = 1e-4
+    base = one_body(x, dimension=dimension)
+    body = base.bodies[0]
+    problem = dataclasses.replace(
+        base, bodies=(body, dataclasses.replace(body, number=2, wall=True)), body=wall.astype(np.int64),
+        fixed=np.ones((len(x), 3), bool), body_force=(0.0, -2e-3, 0.0), cures=Cures(correction=correction),
+        stress=np.where(wall[:, None], 0.0, stress),
+    )  # fmt: skip
+    solver = finished(problem, 0.1)
+    found = solver.frame().particles
+    near = wall & (x[:, 1] > x[:, 1].min() + 0.05)  # the lowest of the three rows sees nothing but wall
+    assert np.abs(found["stress"][near] - stress[near]).max() < 1e-9
+    assert found["density"][wall].tolist() == [1.0] * int(wall.sum())
 
 
 def test_smoothed_velocities_move_particles_and_conserve_momentum() -> None:
