@@ -198,7 +198,7 @@ def test_a_wall_bears_the_stress_of_what_lies_on_it(dimension: int, correction: 
     base = one_body(x, dimension=dimension)
     body = base.bodies[0]
     problem = dataclasses.replace(
-        base, bodies=(body, dataclasses.replace(body, number=2, wall=True)), body=wall.astype(np.int64),
+        base, bodies=(body, dataclasses.replace(body, number=2, bearing=True)), body=wall.astype(np.int64),
         fixed=np.ones((len(x), 3), bool), body_force=(0.0, -2e-3, 0.0), cures=Cures(correction=correction),
         stress=np.where(wall[:, None], 0.0, stress),
     )  # fmt: skip
