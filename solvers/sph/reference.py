@@ -1,7 +1,7 @@
 """The reference configuration of bodies that stay whole: its neighbour list, and the lists of what bodies they meet.
 
 The list is made once, before the first step, and is never searched again; a run of one such body has no other. Where
-several bodies meet by the contact potential, the lists of pairs of different bodies are made anew only when something
+several bodies repel each other, the lists of pairs of different bodies are made anew only when something
 has moved by half of what is left between the bodies' boxes.
 """
 
@@ -94,9 +94,7 @@ def check(p: Problem) -> None:
     wrong = {
         "boundary planes": bool(p.planes),
         "the arithmetic of the original program": p.original,
-        "kernel contact between bodies (the contact potential it does)": len(np.unique(p.body)) > 1
-        and not p.potential
-        and p.pinball is None,
+        "kernel contact between bodies (but with the other kinds)": len(np.unique(p.body)) > 1 and not p.apart,
     }
     for body in p.bodies:
         if body.lagrangian:
@@ -189,12 +187,13 @@ def gap(s: State, bodies: int) -> float:
 
 
 def relist(
-    p: Problem, s: State, own: NeighbourList, others: NeighbourList, h: Floats | None, radius: float, skin: float,
-    threads: int,
+    p: Problem, s: State, own: NeighbourList, others: NeighbourList, kernel_reach: tuple[float, Floats | None],
+    contact_reach: tuple[float, Floats | None], skin: float, threads: int,
 ) -> float:  # fmt: skip
     """Lists of the places x_list: `own` of bodies of the plain kind, `others` of pairs of different bodies.
 
-    Nothing is sorted. Returns how far particles may go before the next call; infinite where there is nothing to list.
+    kernel_reach, contact_reach: search radius and lengths of each, as `NeighbourList.build` has them. Nothing is
+    sorted. Returns how far particles may go before the next call; infinite where there is nothing to list.
     """
     n = s.n
     x, y, z = s.row("x_list", 0), s.row("x_list", 1), s.row("x_list", 2)
@@ -202,14 +201,16 @@ def relist(
     assert y is not None
     whole = np.array([b.lagrangian for b in p.bodies])
     far = np.inf
+    radius, h = kernel_reach
     if not np.all(whole):
         group = np.where(whole[s.material], -1 - np.arange(s.dummy + 1), s.material)
         own.build_mapped(
             n, 0, n, x, y, z, dummy=s.dummy, radius=radius, skin=skin, h=h, group=group, other=False, threads=threads
         )
         far = 0.5 * skin
-    if not p.potential or len(np.unique(s.material[:n])) == 1:
+    if not p.apart or len(np.unique(s.material[:n])) == 1:
         return far
+    radius, h = contact_reach
     free = gap(s, len(p.bodies)) - (radius if h is None else 2.0 * radius)
     if free > skin:
         others.count[:] = 0

@@ -446,7 +446,10 @@ class Solver:
         if not self._uniform_h:
             h = s.rows("h_list" if self._has.changing_h else "h")[0] * (0.5 * self._shape.support)
             radius *= 0.5
-        self._spare = reference.relist(self.problem, s, self._list, self._others, h, radius, self._skin, self.threads)
+        of_contact = self._contact.pairs(radius, h, self._shape.support)
+        self._spare = reference.relist(
+            self.problem, s, self._list, self._others, (radius, h), of_contact, self._skin, self.threads
+        )
 
     def _leave(self) -> None:
         """Bring particles that left a periodic box back, and put those beyond a limit behind the others."""

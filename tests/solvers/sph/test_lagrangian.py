@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from zrno.solvers.contact.pinball import STIFF
 from zrno.solvers.errors import Diverged
 from zrno.solvers.exact.oscillating_plate import OscillatingPlate
 from zrno.solvers.materials import Elastic, sound_speed, von_mises
@@ -374,9 +375,12 @@ def pair(second: Body, gap: float = 0.1) -> Problem:
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("whole", [True, False])
-def test_contact_with_either_kind_gives_the_energy_back(whole: bool) -> None:
-    s = Solver(pair(dataclasses.replace(BODY, lagrangian=whole)))
+@pytest.mark.parametrize(("whole", "balls"), [(True, False), (False, False), (True, True)])
+def test_contact_with_either_kind_gives_the_energy_back(whole: bool, balls: bool) -> None:
+    problem = pair(dataclasses.replace(BODY, lagrangian=whole))
+    if balls:
+        problem = dataclasses.replace(problem, potential=False, pinball=STIFF)
+    s = Solver(problem)
     largest = 0.0
     while s.time < 16.0:
         s.advance(s.time + 0.5, 10**6)
