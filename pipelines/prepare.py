@@ -62,6 +62,10 @@ def prepare(
 
     scene, decks = _decks(paths, chosen)
     refuse_what_is_not_run(decks)
+    if scene is not None and scene.coupling is not None and len(decks) == 1:
+        message = "coupling is of grain and structure, and this scene has one deck"
+        expected = "two decks; bodies of one deck meet by sph.contact"
+        raise InputError([scene.fault(("coupling",), message, expected, key=True)])
     if directory.exists() and not directory.is_dir():
         raise InputError([Fault(str(directory), 1, 1, "not a folder", expected="a folder for the results")])
     made: Sequence[Draft]

@@ -235,6 +235,8 @@ def test_a_scene_of_bad_input_writes_no_deck(
     [
         (("spacing: 0.25", "set: {birth_death: {option: 1, particles: [1, 2]}}"), [],
          "scene.yaml:1:99: error: birth and death of particles is not computed yet (birth_death 1)"),
+        (("decks: [", "coupling: {contact: pinball}\ndecks: ["), [],
+         "scene.yaml:2:1: error: coupling is of grain and structure, and this scene has one deck"),
         (("", ""), ["--set", "sph.kernel=cubc"], "--set:1:12: error: sph.kernel has a wrong value (cubc)"),
         (("von_mises, density: 2, E: 10, nu: 0.3, yield_stress: 1", "cap, density: 2, K: 10, G: 5, alpha: 1"), [],
          "plate.yaml:3:16: error: material 1: W 0.0 and D 0.0 must be positive: the cap hardens by them"),

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..jit import kernel
+from .state import State
 
 Floats = NDArray[np.float64]
 
@@ -177,3 +178,34 @@ def _periodic(planes: tuple[Plane, ...], axis: int) -> tuple[float | None, float
             else:
                 high = plane.position
     return low, high
+
+
+def leave(s: State, planes: tuple[Plane, ...], live: int, threads: int) -> int:
+    """Bring particles that left a periodic box back, and put those beyond a limit behind the others.
+
+    Returns how many are left of the `live` ones.
+    """
+    names = ("x", "x_half", "x_start")
+    moving = [np.stack([s.rows(name)[axis] for name in names]) for axis in range(s.d)]
+    wrap(planes, moving, live)
+    for axis, moved in enumerate(moving):
+        for name, values in zip(names, moved, strict=True):
+            s.rows(name)[axis, :live] = values[:live]
+    out = beyond_limit(planes, s.rows("x")[:, :live])
+    if np.any(out):
+        s.sort(np.concatenate((np.flatnonzero(~out), np.flatnonzero(out))), threads)
+    return live - int(np.count_nonzero(out))
+
+
+def place_images(s: State, planes: tuple[Plane, ...], live: int, reach: float) -> Images:
+    """Make the images of the particles near planes, with all that does not change until the next list."""
+    found = images(planes, s.rows("x_list")[:, :live], reach)
+    s.make_room(len(found))
+    at = slice(s.n, s.n + len(found))
+    for name in ("mass", "h", "h_list"):
+        rows = s.rows(name)
+        rows[:, at] = rows[:, found.source]
+    s.material[at] = s.material[found.source]
+    x = s.rows("x_list")
+    x[:, at] = found.sign[: s.d] * x[:, found.source] + found.shift[: s.d]
+    return found

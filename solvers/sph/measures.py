@@ -76,3 +76,20 @@ def total(energies: dict[str, float]) -> float:
     """What stays constant."""
     stored = energies["contact_energy"] + energies["contact_dissipated"] + energies["artificial_energy"]
     return energies["kinetic"] + energies["internal"] + stored - energies["external_work"]
+
+
+def report(start: dict[str, float], now: dict[str, float]) -> dict[str, float]:
+    """Energies at the start and now.
+
+    balance_error is relative to the largest of kinetic, internal and external work.
+    """
+    scale = max(start["kinetic"], now["kinetic"], abs(now["internal"]), abs(now["external_work"]), 1e-300)
+    return {
+        "initial": start["kinetic"] + start["internal"],
+        "final": total(now) + now["external_work"],
+        "kinetic": now["kinetic"],
+        "internal": now["internal"],
+        "external_work": now["external_work"],
+        "dissipated": now["dissipated"],
+        "balance_error": abs(total(now) - total(start)) / scale,
+    }

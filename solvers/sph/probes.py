@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from .problem import Problem
 from .smoothing import Shape, value_many
 from .state import State
 
@@ -45,3 +46,15 @@ def traces(s: State, live: int, ids: NDArray[np.int64], velocity: Floats) -> dic
         for name, value in zip([*names, "pressure", "density"], values.tolist(), strict=True):
             columns[f"particle_{number}_{name}"] = value
     return columns
+
+
+def columns(p: Problem, s: State, live: int, shape: Shape, velocity: Floats) -> dict[str, float]:
+    """The columns of a problem's transducers and traced particles."""
+    found: dict[str, float] = {}
+    if p.transducers:
+        table = np.array(p.transducers)
+        values = pressures(s, live, shape, table[:, :3], table[:, 3].astype(np.int64))
+        found = {f"pressure_{k}": value for k, value in enumerate(values.tolist(), start=1)}
+    if p.traced:
+        found |= traces(s, live, np.array(p.traced), velocity)
+    return found

@@ -16,20 +16,18 @@ from numpy.typing import NDArray
 
 from ..errors import Diverged
 from ..frame import Frame
-from ..materials import PLASTIC_STRAIN, constant_wave, sound_speed, state_rows
-from ..neighbours import FAR, Cells, NeighbourList
+from ..materials import PLASTIC_STRAIN
+from ..neighbours import Cells, NeighbourList
 from ..threads import available, run
-from . import across, ghosts, measures, probes, reference, step
-from .contact import contact_of, culprit
-from .problem import STEP_OPTIONS, Cures, Problem
-from .smoothing import normaliser, shape_of, value_at
-from .state import Arrays, Numbers, Rows, State
+from . import across, blame, ghosts, measures, probes, reference, setup, step
+from .contact import contact_of
+from .problem import Cures, Problem
+from .smoothing import shape_of
+from .state import Arrays, State
 
 SKIN = 0.25  # of the largest h: the list's spare radius
-IMAGE = 0.25  # of h: a particle nearer to its image than this shortens the step no further
 CHECKED = 50  # steps between looks at the energy balance
 STORED = ("contact_energy", "contact_dissipated", "artificial_energy")  # columns that stand at the end
-CREATED = 3.0  # so many times the energy put in cannot come out of a stable run
 SMALL = 2000  # fewer particles run on one thread: a parallel region costs more than it saves
 
 Floats = NDArray[np.float64]
@@ -46,33 +44,15 @@ class Solver:
         self.live = n  # particles that have not left the problem; the others stand behind them
         self.threads = 1 if n < SMALL else max(1, min(threads or available(), available()))
         self._shape = shape_of(problem.kernel, problem.dimension)
-        self._mixed = self._is_mixed()
+        self._mixed = setup.is_mixed(problem)
         self._contact = contact_of(problem, self._shape)
-        self._uniform_h = bool(np.all(problem.h == problem.h[0])) and problem.h_option == 0
-        self._uniform_mass = bool(np.all(problem.mass == problem.mass[0]))
+        self._uniform_h = setup.uniform_h(problem)
+        self._uniform_mass = setup.uniform_mass(problem)
         self._skin = skin * float(problem.h.max()) * 0.5 * self._shape.support
         self._plain = not all(b.lagrangian for b in problem.bodies)
         cures = self._cures = problem.cures if self._plain else Cures()
-        self._heats = any(b.alpha or b.beta for b in problem.bodies)
         self._walled = any(b.bearing for b in problem.bodies)
-        has = Rows(
-            state=max(state_rows(b.law) for b in problem.bodies),
-            contact=problem.apart or bool(problem.walls),
-            correction=cures.correction,
-            artificial=cures.artificial_stress > 0.0,
-            heat=self._heats,
-            density_rate=any(b.density_diffusion for b in problem.bodies),
-            stress_rate=any(b.stress_diffusion for b in problem.bodies),
-            xsph=cures.xsph > 0.0,
-            changing_h=problem.h_option != 0,
-            body_work=problem.body_curve is not None,
-            wave=not (problem.original or all(constant_wave(b.law) for b in problem.bodies)),
-            contact_heat=self._contact.heats,
-            slip=self._contact.friction is not None,
-            normals=self._contact.normals is not None,
-            wall_slip=self._contact.wall_slip,
-            lagrangian=any(b.lagrangian for b in problem.bodies),
-        )
+        has = setup.rows_of(problem, self._contact, cures)
         self._has = has
         self._state = State(n, problem.dimension, has)
         self._images = ghosts.Images(np.zeros(0, np.int64), np.zeros((3, 0)), np.zeros((3, 0)))
@@ -83,8 +63,8 @@ class Solver:
         self._others = NeighbourList(n)
         self._reduced = np.zeros((self.threads, 8))  # a cache line each
         self._laws = tuple(b.law for b in problem.bodies)
-        self._numbers = self._make_numbers()
-        self._fill_state()
+        self._numbers = setup.numbers_of(problem, self._contact, self._shape, mirrors=self._mirrors is not None)
+        setup.fill(self._state, problem, self._numbers, has, self._shape)
         self._spare = 0.5 * self._skin  # how far particles go before the next list
         self._reference = self._make_reference() if has.lagrangian else None
         self._rebuild()
@@ -97,83 +77,6 @@ class Solver:
         if problem.original:
             self._start_as_original(first)
         self._start_energy = self._energies()
-
-    # what the run is
-
-    def _is_mixed(self) -> bool:
-        """Whether bodies of different density are each other's neighbours.
-
-        The sums are then to suit that (see `pairs`).
-        """
-        p = self.problem
-        return len({b.density for b in p.bodies}) > 1 and not p.apart and not p.original
-
-    def _make_numbers(self) -> Numbers:
-        p = self.problem
-        h = float(p.h[0])
-        normal = normaliser(self._shape, p.dimension)
-        times, values = p.body_curve or (np.zeros(2), np.zeros((2, 3)))
-        spacing = float(np.median((p.mass / p.density) ** (1.0 / p.dimension) / p.h))
-        wave = np.array([sound_speed(b.law, b.density, self._first_energy(k)) for k, b in enumerate(p.bodies)])
-        wave = np.where(self._contact.rigid, 0.0, wave)
-        viscous = np.array([(b.linear, b.quadratic, b.least, b.most) for b in p.bodies])
-        scale = normal / h ** (p.dimension + 2) if self._uniform_h else normal
-        return Numbers(
-            dimension=p.dimension,
-            inverse_h2=1.0 / (h * h),
-            scale=scale,
-            force_scale=scale * (float(p.mass[0]) if self._uniform_mass else 1.0),
-            normal=normal,
-            viscous=viscous,
-            wave=wave,
-            body=np.array(p.body_force if p.body_curve is None else values[0], dtype=float),
-            body_times=np.asarray(times, dtype=float),
-            body_values=np.asarray(values, dtype=float),
-            h_option=p.h_option,
-            relaxation=p.relaxation,
-            pair_viscosity=np.array([(b.alpha, b.beta) for b in p.bodies]),
-            density_diffusion=np.array([b.density_diffusion for b in p.bodies]),
-            stress_diffusion=np.array([b.stress_diffusion for b in p.bodies]),
-            least_distance=0.0 if self._mirrors is None else IMAGE,
-            wall=np.array([b.density if b.bearing else 0.0 for b in p.bodies]),
-            inverse_w=1.0 / value_at(self._shape, spacing),
-            step_option=p.step_option,
-            step_factor=p.step_factor,
-            original=p.original,
-            mixed=self._mixed,
-        )
-
-    def _first_energy(self, body: int) -> float:
-        """Mean energy per unit mass of a body's particles at the start."""
-        p = self.problem
-        mine = p.body == body
-        return float(p.energy[mine].mean()) if p.energy is not None and np.any(mine) else 0.0
-
-    def _fill_state(self) -> None:
-        p, s, n = self.problem, self._state, self.n
-        d = s.d
-        for name, values in (("x", p.x), ("x_half", p.x), ("x_start", p.x), ("u", p.v)):
-            s.rows(name)[:, :n] = values.T[:d]
-        for name, scalar in (("mass", p.mass), ("h", p.h), ("density", p.density), ("volume", p.mass / p.density)):
-            s.rows(name)[0, :n] = scalar
-        if p.energy is not None:
-            s.rows("energy")[0, :n] = p.energy
-        if p.stress is not None:
-            rows = s.rows("stress")
-            rows[:, :n] = p.stress.T[: len(rows)]
-        s.id[:n] = np.arange(1, n + 1) if p.id is None else p.id
-        s.material[:n] = p.body
-        if p.fixed is not None:
-            s.fixed[:n] = p.fixed @ np.array([1, 2, 4])
-        if self._has.changing_h:
-            s.rows("h_start")[0, :n] = p.h * p.density ** (1.0 / p.dimension)
-        if self._has.wave:
-            s.rows("wave")[0, :n] = self._numbers.wave[p.body]
-        if self._has.correction:  # none yet: the stress-free start needs none
-            s.rows("correction")[: 3 if p.dimension == 3 else 2] = 1.0
-        radius = self._shape.support * float(p.h.max())
-        span = max(float(np.ptp(p.x, axis=0).max()), radius)
-        s.place_dummy(float(np.abs(p.x).max()) + FAR * radius + span)
 
     def _start_as_original(self, first: float) -> None:
         """The original program begins with a whole step of strain, at positions half a step before the start."""
@@ -194,35 +97,7 @@ class Solver:
 
     def kernels(self) -> str:
         """What the loops were built for, for the log."""
-        p = self.problem
-        laws = ", ".join(dict.fromkeys(type(law).__name__ for law in self._laws))
-        return (
-            f"{p.dimension}D, {p.kernel} kernel, {'one' if self._uniform_h else 'variable'} h, "
-            f"{'one' if self._uniform_mass else 'variable'} mass, laws: {laws}, "
-            f"contact: {self._contact.name(len(p.bodies))}, "
-            f"step: {STEP_OPTIONS[p.step_option]}, {self.threads} thread(s)"
-            + "".join(f", {term}" for term in self._terms())
-        )
-
-    def _terms(self) -> list[str]:
-        """What a run has beyond the plain method."""
-        p, cures = self.problem, self._cures
-        said = {
-            "total-Lagrangian: " + ", ".join(b.name for b in p.bodies if b.lagrangian): self._has.lagrangian,
-            "gradient correction": cures.correction,
-            f"artificial stress {cures.artificial_stress:g}": cures.artificial_stress > 0.0,
-            "density diffusion": self._has.density_rate,
-            "stress diffusion": self._has.stress_rate,
-            f"XSPH {cures.xsph:g}": cures.xsph > 0.0,
-            "pair viscosity": self._heats,
-            "walls that bear their neighbours' stress": self._walled,
-            f"h option {p.h_option}": p.h_option != 0,
-            f"dynamic relaxation {p.relaxation:g}": p.relaxation != 1.0,
-            f"{len(p.planes)} boundary plane(s)": bool(p.planes),
-            "base acceleration by curve": p.body_curve is not None,
-            "as the original program": p.original,
-        }
-        return [term for term, there in said.items() if there]
+        return setup.described(self.problem, self._contact, self._cures, self._has, self.threads)
 
     # the loop
 
@@ -260,15 +135,17 @@ class Solver:
                 if self.time >= pause:
                     break
             elif reason == step.BROKEN:
-                raise self._broken()
+                raise blame.broken(self._state, self.step + 1, int(self._progress[step.BAD]))
             elif reason == step.FAILED:
-                raise self._failed()
+                raise blame.torn(self._state, self.step, int(self._progress[step.BAD]))
             elif reason == step.COLLAPSED:
                 raise self._collapsed()
             else:
                 break
         if self.step // CHECKED > started // CHECKED:
-            self._check_energy()
+            made = blame.energy_made(self._state, self.step, self._start_energy, self._energies())
+            if made is not None:
+                raise made
 
     def _run_kernel(self, until: float, steps: int, pause: float = math.inf) -> int:
         a = self._arrays()
@@ -329,68 +206,7 @@ class Solver:
         )
 
     def _arrays(self) -> Arrays:
-        s = self._state
-        positions = {
-            f"{axis}{suffix}": s.row(f"x{suffix}", k)
-            for suffix in ("", "_half", "_list", "_start")
-            for k, axis in enumerate("xyz")
-        }
-        return Arrays(
-            **positions,
-            u=s.row("u", 0),
-            v=s.row("u", 1),
-            w=s.row("u", 2),
-            ax=s.row("a", 0),
-            ay=s.row("a", 1),
-            az=s.row("a", 2),
-            cx=s.row("c", 0),
-            cy=s.row("c", 1),
-            cz=s.row("c", 2),
-            contact_work=s.row("contact_work"),
-            bx=s.row("b", 0),
-            by=s.row("b", 1),
-            bz=s.row("b", 2),
-            artificial_work=s.row("artificial_work"),
-            heat=s.row("heat"),
-            h_start=s.row("h_start"),
-            h_list=s.row("h_list"),
-            correction=s.rows("correction"),
-            density_rate=s.row("density_rate"),
-            stress_rate=s.rows("stress_rate"),
-            smoothed=s.rows("smoothed"),
-            body_work=s.row("body_work"),
-            wave=s.row("wave"),
-            stress=s.rows("stress"),
-            gradient=s.rows("gradient"),
-            s=s.rows("s"),
-            density=s.row("density"),
-            volume=s.row("volume"),
-            mass=s.row("mass"),
-            h=s.row("h"),
-            energy=s.row("energy"),
-            dissipated=s.row("dissipated"),
-            viscosity=s.row("viscosity"),
-            nearest=s.row("nearest"),
-            state=s.rows("state"),
-            id=s.id,
-            material=s.material,
-            fixed=s.fixed,
-            first=self._list.first,
-            count=self._list.count,
-            rows=self._list.rows,
-            c_first=self._others.first,
-            c_count=self._others.count,
-            c_rows=self._others.rows,
-            reduced=self._reduced,
-            contact_heat=s.row("contact_heat"),
-            slip=s.rows("slip"),
-            wall_slip=s.rows("wall_slip"),
-            colour=s.rows("colour"),
-            mobilised=s.rows("mobilised"),
-            deformation=s.rows("deformation"),
-            hourglass=s.rows("hourglass"),
-            nominal=s.rows("nominal"),
-        )
+        return self._state.arrays(self._list, self._others, self._reduced)
 
     def _rebuild(self, *, sort: bool = True) -> None:
         """Sort the particles by cell and list their neighbours.
@@ -399,7 +215,10 @@ class Solver:
         """
         s = self._state
         if sort:
-            self._leave()
+            if self.problem.planes:
+                self.live = ghosts.leave(s, self.problem.planes, self.live, self.threads)
+            if self.live == 0:
+                raise Diverged(self.step, int(s.id[0]), "all particles have left the problem through its limit planes")
             s.rows("x_list")[:] = s.rows("x")
             if self._has.changing_h:
                 s.rows("h_list")[:] = s.rows("h")
@@ -451,92 +270,18 @@ class Solver:
             self.problem, s, self._list, self._others, (radius, h), of_contact, self._skin, self.threads
         )
 
-    def _leave(self) -> None:
-        """Bring particles that left a periodic box back, and put those beyond a limit behind the others."""
-        s, planes = self._state, self.problem.planes
-        if not planes:
-            return
-        moving = [np.stack([s.rows(name)[axis] for name in ("x", "x_half", "x_start")]) for axis in range(s.d)]
-        ghosts.wrap(planes, moving, self.live)
-        for axis, moved in enumerate(moving):
-            for name, values in zip(("x", "x_half", "x_start"), moved, strict=True):
-                s.rows(name)[axis, : self.live] = values[: self.live]
-        out = ghosts.beyond_limit(planes, s.rows("x")[:, : self.live])
-        if np.any(out):
-            if np.all(out):
-                raise Diverged(self.step, int(s.id[0]), "all particles have left the problem through its limit planes")
-            s.sort(np.concatenate((np.flatnonzero(~out), np.flatnonzero(out))), self.threads)
-            self.live -= int(np.count_nonzero(out))
-
     def _make_images(self, reach: float) -> None:
         """Images of the particles near planes, with everything that the loops read of them."""
         s = self._state
-        found = ghosts.images(self.problem.planes, s.rows("x_list")[:, : self.live], reach)
-        s.make_room(len(found))
-        self._images = found
-        at = slice(self.n, self.n + len(found))
-        for name in ("mass", "h", *(["h_list"] if self._has.changing_h else [])):
-            s.rows(name)[0, at] = s.rows(name)[0, found.source]
-        s.material[at] = s.material[found.source]
-        s.rows("x_list")[:, at] = found.sign[: s.d] * s.rows("x_list")[:, found.source] + found.shift[: s.d]
+        found = self._images = ghosts.place_images(s, self.problem.planes, self.live, reach)
         a = self._arrays()
         z = a.z if s.d == 3 else None
+        correction = a.correction if self._has.correction else None
         ghosts.follow_motion(0, len(found), self.n, z, found.source, found.sign, found.shift, a)
-        ghosts.follow_stress(
-            0, len(found), self.n, z, a.correction if self._has.correction else None, found.source, found.sign, a
-        )
-
-    def _check_energy(self) -> None:
-        """An unstable step makes energy out of nothing, long before a number overflows."""
-        start, now = self._start_energy, self._energies()
-        given = start["kinetic"] + abs(start["internal"]) + abs(now["external_work"])
-        made = measures.total(now) - measures.total(start)
-        if not made <= CREATED * given:
-            s, n = self._state, self.n
-            kinetic = s.rows("mass")[0, :n] * np.sum(s.rows("u")[:, :n] ** 2, axis=0)
-            raise Diverged(
-                self.step,
-                int(s.id[np.argmax(kinetic)]),
-                f"the run has made {made / given:.3g} times the energy that was put in, most of it here: "
-                "the step factor may be too large or the material is stretched apart",
-            )
-
-    def _broken(self) -> Diverged:
-        i = int(self._progress[step.BAD])
-        return Diverged(
-            self.step + 1,
-            int(self._state.id[i]),
-            "it moved further than its smoothing length in one step, or its velocity is not a number: the step factor "
-            "may be too large, two particles coincide, or the material is stretched apart",
-        )
-
-    def _failed(self) -> Diverged:
-        i = int(self._progress[step.BAD])
-        s = self._state
-        f = np.eye(s.d) + s.rows("deformation")[:, i].reshape(s.d, s.d)
-        return Diverged(
-            self.step,
-            int(s.id[i]),
-            f"its volume is {np.linalg.det(f):.3g} and its greatest stretch {np.linalg.norm(f, 2):.3g} times that of "
-            "the start: a total-Lagrangian body must stay whole, or the step factor is too large",
-        )
+        ghosts.follow_stress(0, len(found), self.n, z, correction, found.source, found.sign, a)
 
     def _collapsed(self) -> Diverged:
-        p, s, n = self.problem, self._state, self.n
-        cause = "the time step collapsed"
-        item = 0
-        if p.apart and (found := culprit(self._arrays(), p.dimension, self.live)):
-            item, why = found
-            cause += f": {why}"
-        elif p.step_option == 2:
-            i = int(np.argmin(s.rows("nearest")[0, :n]))
-            item = int(s.id[i])
-            distance = math.sqrt(s.rows("nearest")[0, i])
-            cause += (
-                f" to {self.dt:.3g}: its nearest neighbour is only {distance:.3g} away "
-                "(two particles coincide or clump)"
-            )
-        return Diverged(self.step, item, cause)
+        return blame.collapsed(self.problem, self._state, self._arrays(), self.live, self.step, self.dt)
 
     # what it shows
 
@@ -597,38 +342,12 @@ class Solver:
             **stored,
             "max_plastic_strain": float(plastic.max()),
             "step": float(self.step),
-            **self._probes(),
+            **probes.columns(self.problem, self._state, self.live, self._shape, self._velocity()),
         }
-
-    def _probes(self) -> dict[str, float]:
-        """The columns of transducers and traced particles."""
-        p = self.problem
-        columns = {}
-        if p.transducers:
-            table = np.array(p.transducers)
-            found = probes.pressures(self._state, self.live, self._shape, table[:, :3], table[:, 3].astype(np.int64))
-            columns = {f"pressure_{k}": value for k, value in enumerate(found.tolist(), start=1)}
-        if p.traced:
-            columns |= probes.traces(self._state, self.live, np.array(p.traced), self._velocity())
-        return columns
 
     def energy_report(self) -> dict[str, float]:
-        """Energies at the start and now.
-
-        balance_error is relative to the largest of kinetic, internal and external work.
-        """
-
-        start, now = self._start_energy, self._energies()
-        scale = max(start["kinetic"], now["kinetic"], abs(now["internal"]), abs(now["external_work"]), 1e-300)
-        return {
-            "initial": start["kinetic"] + start["internal"],
-            "final": measures.total(now) + now["external_work"],
-            "kinetic": now["kinetic"],
-            "internal": now["internal"],
-            "external_work": now["external_work"],
-            "dissipated": now["dissipated"],
-            "balance_error": abs(measures.total(now) - measures.total(start)) / scale,
-        }
+        """Energies at the start and now, and how far their balance is out, see `measures.report`."""
+        return measures.report(self._start_energy, self._energies())
 
     # to be continued
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..jit import kernel
+from ..neighbours import NeighbourList
 from ..threads import run, share
 from .nominal import HOURGLASS
 
@@ -259,3 +260,67 @@ class State:
             self.rows(name)[:, self.dummy] = far
         self.rows("h")[:, self.dummy] = self.rows("h")[:, : self.n].max()
         self.rows("density")[:, self.dummy] = 1.0
+
+    def arrays(self, neighbours: NeighbourList, others: NeighbourList, reduced: Floats) -> Arrays:
+        """What the loops see; views."""
+        positions = {
+            f"{axis}{suffix}": self.row(f"x{suffix}", k)
+            for suffix in ("", "_half", "_list", "_start")
+            for k, axis in enumerate("xyz")
+        }
+        return Arrays(
+            **positions,
+            u=self.row("u", 0),
+            v=self.row("u", 1),
+            w=self.row("u", 2),
+            ax=self.row("a", 0),
+            ay=self.row("a", 1),
+            az=self.row("a", 2),
+            cx=self.row("c", 0),
+            cy=self.row("c", 1),
+            cz=self.row("c", 2),
+            contact_work=self.row("contact_work"),
+            bx=self.row("b", 0),
+            by=self.row("b", 1),
+            bz=self.row("b", 2),
+            artificial_work=self.row("artificial_work"),
+            heat=self.row("heat"),
+            h_start=self.row("h_start"),
+            h_list=self.row("h_list"),
+            correction=self.rows("correction"),
+            density_rate=self.row("density_rate"),
+            stress_rate=self.rows("stress_rate"),
+            smoothed=self.rows("smoothed"),
+            body_work=self.row("body_work"),
+            wave=self.row("wave"),
+            stress=self.rows("stress"),
+            gradient=self.rows("gradient"),
+            s=self.rows("s"),
+            density=self.row("density"),
+            volume=self.row("volume"),
+            mass=self.row("mass"),
+            h=self.row("h"),
+            energy=self.row("energy"),
+            dissipated=self.row("dissipated"),
+            viscosity=self.row("viscosity"),
+            nearest=self.row("nearest"),
+            state=self.rows("state"),
+            id=self.id,
+            material=self.material,
+            fixed=self.fixed,
+            first=neighbours.first,
+            count=neighbours.count,
+            rows=neighbours.rows,
+            c_first=others.first,
+            c_count=others.count,
+            c_rows=others.rows,
+            reduced=reduced,
+            contact_heat=self.row("contact_heat"),
+            slip=self.rows("slip"),
+            wall_slip=self.rows("wall_slip"),
+            colour=self.rows("colour"),
+            mobilised=self.rows("mobilised"),
+            deformation=self.rows("deformation"),
+            hourglass=self.rows("hourglass"),
+            nominal=self.rows("nominal"),
+        )
