@@ -303,11 +303,14 @@ def drift(i0, i1, z, smoothed, h_start, h_list, mirrors, half_support, dt, array
     return largest, float(bad)
 
 
+DIFFUSION = 0.125  # of h^2 / nu: what viscosity may spread in a step (Morris, Fox & Zhu 1997)
+
+
 @kernel
 def critical_step(i0, i1, z, wave, numbers, arrays):
     """The smallest stable step of a block by the deck's option.
 
-    1 h/(c+|v|), 2 nearest distance/(c+|v|), 0 by viscosity.
+    1 h/(c+|v|), 2 nearest distance/(c+|v|), 0 by artificial viscosity; and by a fluid's own viscosity.
     """
     option = numbers.step_option
     viscous = numbers.viscous
@@ -338,4 +341,7 @@ def critical_step(i0, i1, z, wave, numbers, arrays):
             length = np.sqrt(arrays.nearest[i])
             length = min(max(length, numbers.least_distance * arrays.h[i]), 2.0 * arrays.h[i])
         least = min(least, length / (c + np.sqrt(speed2)))
+        viscosity = numbers.kinematic_viscosity[arrays.material[i]]
+        if viscosity > 0.0:
+            least = min(least, DIFFUSION * arrays.h[i] * arrays.h[i] / viscosity)
     return least

@@ -77,6 +77,7 @@ def numbers_of(p: Problem, contact: Contact, shape: Shape, *, mirrors: bool) -> 
         stress_diffusion=np.array([b.stress_diffusion for b in p.bodies]),
         least_distance=IMAGE if mirrors else 0.0,
         wall=np.array([b.density if b.bearing else 0.0 for b in p.bodies]),
+        kinematic_viscosity=np.array([getattr(b.law, "viscosity", 0.0) / b.density for b in p.bodies]),
         inverse_w=1.0 / value_at(shape, spacing),
         step_option=p.step_option,
         step_factor=p.step_factor,

@@ -109,7 +109,8 @@ class Numbers(NamedTuple):
     (bodies,) speeds, 0 of rigid ones. body: (3,) acceleration now, by the table
     body_times (k,), body_values (k, 3). h_option: as the deck's. relaxation: factor of the velocities in each step.
     pair_viscosity: (bodies, 2) alpha and beta; density_diffusion, stress_diffusion: (bodies,)
-    factors; wall: (bodies,) the density of one that is a wall, else 0; inverse_w: 1/W at the particles' spacing;
+    factors; wall: (bodies,) the density of one that is a wall, else 0; kinematic_viscosity:
+    (bodies,) of fluids, else 0; inverse_w: 1/W at the particles' spacing;
     least_distance: in h, that counts for the step: an image comes as near to its particle as that to the plane.
     """
 
@@ -129,6 +130,7 @@ class Numbers(NamedTuple):
     density_diffusion: Any
     stress_diffusion: Any
     wall: Any
+    kinematic_viscosity: Any
     inverse_w: float
     least_distance: float
     step_option: int
