@@ -1,0 +1,35 @@
+"""Finite elements: implicit statics and dynamics of solids, plane problems, shells and bars."""
+
+from .problem import (
+    SMALL,
+    TOTAL,
+    UPDATED,
+    BodyLoad,
+    Curve,
+    Dynamics,
+    Elements,
+    FaceLoad,
+    Iteration,
+    Motion,
+    NodalLoad,
+    Problem,
+    Relation,
+)
+from .solver import Solver
+
+__all__ = [
+    "SMALL",
+    "TOTAL",
+    "UPDATED",
+    "BodyLoad",
+    "Curve",
+    "Dynamics",
+    "Elements",
+    "FaceLoad",
+    "Iteration",
+    "Motion",
+    "NodalLoad",
+    "Problem",
+    "Relation",
+    "Solver",
+]

@@ -1,0 +1,203 @@
+"""The structure as one system: its groups of elements, free degrees of freedom, relations, and the sparse matrix."""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from . import linear, structure
+from .group import Group, Sink
+from .kinds import make_group
+from .problem import Problem
+from .shape import Shape
+
+Floats = NDArray[np.float64]
+AXES = ("ux", "uy", "uz", "rx", "ry", "rz")
+
+
+class Mechanism(ArithmeticError):
+    """A structure that can move without resistance. node: index; dof: 0..5."""
+
+    def __init__(self, node: int, dof: int, cause: str) -> None:
+        super().__init__(cause)
+        self.node = node
+        self.dof = dof
+
+
+class Assembly:
+    """Groups, equations and the matrix of a problem. symmetric: whether the matrix is."""
+
+    def __init__(self, problem: Problem, *, threads: int = 1, symmetric: bool = True) -> None:
+        self.problem = problem
+        self.threads = threads
+        self.n = len(problem.x)
+        self.groups: list[Group] = [make_group(e, problem.x) for e in problem.elements]
+        active = np.zeros((self.n, 6), bool)
+        for group in self.groups:
+            used = np.unique(group.elements.nodes)
+            active[np.ix_(used, group.dofs)] = True
+        self.active = active & ~problem.fixed
+        self.prescribed = np.zeros((self.n, 6), bool)
+        for motion in problem.motions:
+            self.prescribed[motion.nodes, motion.dofs] = True
+        self.free = self.active & ~self.prescribed
+        self.structure = structure.build(self.free, [g.elements.nodes for g in self.groups], symmetric=symmetric)
+        for group in self.groups:
+            group.bind(self.structure)
+        self.where = np.flatnonzero(self.free.ravel())
+        self.transform = self._relations() if problem.relations else None
+        self.system = self._system(self.structure.starts, self.structure.columns)
+
+    def _system(self, starts: NDArray[np.int32], columns: NDArray[np.int32]) -> linear.System:
+        kind = "definite" if self.structure.symmetric else "general"
+        return linear.System(starts, columns, kind=kind, method=self.problem.solver, threads=self.threads,
+                             near_null=self._rigid_motions)  # fmt: skip
+
+    @property
+    def equations(self) -> int:
+        """Unknowns."""
+        return self.structure.count if self.transform is None else self.transform.shape[1]
+
+    # vectors
+
+    def gather(self, forces: Floats) -> Floats:
+        """Forces (n, 6) on the unknowns."""
+        own: Floats = forces.ravel()[self.where]
+        return own if self.transform is None else self.transform.T @ own
+
+    def expand(self, unknowns: Floats) -> Floats:
+        """A change (n, 6) of the unknowns; zero elsewhere."""
+        out = np.zeros(6 * self.n)
+        out[self.where] = unknowns if self.transform is None else self.transform @ unknowns
+        return out.reshape(self.n, 6)
+
+    # matrices
+
+    def evaluate(
+        self, shape: Shape, before: Shape, dt: float, *, stiff: bool = True, moved: Floats | None = None
+    ) -> tuple[Floats, Floats]:
+        """Internal forces (n, 6) at a shape, and the force of a motion `moved` (n, 6) by the stiffness.
+
+        stiff: also fills the matrix (`factor` then makes it ready). Raises Bad.
+        """
+        values = self._values() if stiff else None
+        sink = Sink(np.zeros((self.n, 6)), self.structure, values, moved)
+        for group in self.groups:
+            group.evaluate(shape, before, dt, sink)
+        return sink.forces, sink.of_motion
+
+    def _values(self) -> Floats:
+        if self.transform is None:
+            self.system.values[:] = 0.0
+            return self.system.values
+        self._full_values = np.zeros(len(self.structure.columns))
+        return self._full_values
+
+    def factor(self, *, extra: Floats | None = None, scale: float = 1.0, definite: bool = True) -> None:
+        """Factor scale x matrix + extra (values of the same structure). Raises Mechanism."""
+        values = self.system.values if self.transform is None else self._full_values
+        if scale != 1.0:
+            values *= scale
+        if extra is not None:
+            values += extra
+        if self.transform is not None:
+            self._reduce(values)
+        kind = "general" if not self.structure.symmetric else "definite" if definite else "symmetric"
+        try:
+            self.system.factor(kind)
+        except linear.Singular as error:
+            raise self.mechanism(error) from error
+
+    def _reduce(self, values: Floats) -> None:
+        """The matrix of the independent unknowns."""
+        s, t = self.structure, self.transform
+        assert t is not None
+        upper = sp.csr_matrix((values, s.columns, s.starts), shape=(s.count, s.count))
+        full = upper + sp.triu(upper, 1).T if s.symmetric else upper
+        reduced = (t.T @ full @ t).tocsr()
+        reduced = sp.triu(reduced).tocsr() if s.symmetric else reduced
+        reduced.sort_indices()
+        self.system = self._system(reduced.indptr.astype(np.int32), reduced.indices.astype(np.int32))
+        self.system.values[:] = reduced.data
+
+    def solve(self, right: Floats) -> Floats:
+        """Unknowns of a right side; raises Mechanism."""
+        try:
+            return self.system.solve(right)
+        except linear.Singular as error:
+            raise self.mechanism(error) from error
+
+    def mechanism(self, error: linear.Singular) -> Mechanism:
+        """What a singular matrix means: where and along what the structure can move."""
+        place = error.equation
+        if place < 0 and len(self.system.values):
+            place = self._softest()
+        if self.transform is not None or not 0 <= place < len(self.where):
+            return Mechanism(-1, 0, f"the structure can move without resistance ({error})")
+        node, dof = divmod(int(self.where[place]), 6)
+        return Mechanism(node, dof, "the structure can move without resistance")
+
+    def _softest(self) -> int:
+        """The equation with the smallest diagonal: a node that hangs loose."""
+        return int(np.argmin(self.system.matrix.diagonal()))
+
+    def mass(self, *, lumped: bool) -> tuple[Floats, Floats | None]:
+        """Lumped mass (n, 6), and the consistent matrix's values in the structure, or None with lumped."""
+        diagonal = np.zeros((self.n, 6))
+        for group in self.groups:
+            group.mass(Sink(np.zeros((self.n, 6)), None, None), lumped=diagonal)
+        if lumped:
+            return diagonal, None
+        values = np.zeros(len(self.structure.columns))
+        sink = Sink(np.zeros((self.n, 6)), self.structure, values)
+        for group in self.groups:
+            group.mass(sink)
+        return diagonal, values
+
+    def commit(self) -> None:
+        """Make the last evaluation the state to go on from."""
+        for group in self.groups:
+            group.commit()
+
+    # what the unknowns are
+
+    def _relations(self) -> sp.csr_matrix:
+        """Free degrees of freedom from independent ones; chains are followed."""
+        number = self.structure.equation
+        n = self.structure.count
+        rows: dict[int, dict[int, float]] = {}
+        for r in self.problem.relations:
+            slave = int(number[r.node, r.dof])
+            if slave < 0:
+                continue
+            terms = {int(number[a, d]): float(c) for a, d, c in zip(r.nodes, r.dofs, r.coefficients, strict=True)}
+            rows[slave] = {k: c for k, c in terms.items() if k >= 0}
+        for _ in range(len(rows)):
+            chained = [s for s, terms in rows.items() if any(k in rows for k in terms)]
+            if not chained:
+                break
+            for slave in chained:
+                merged: dict[int, float] = {}
+                for k, c in rows[slave].items():
+                    for k2, c2 in rows.get(k, {k: 1.0}).items():
+                        merged[k2] = merged.get(k2, 0.0) + c * c2
+                rows[slave] = merged
+        independent = np.setdiff1d(np.arange(n), np.array(sorted(rows), dtype=int))
+        place = np.full(n, -1)
+        place[independent] = np.arange(len(independent))
+        entries = [(i, place[i], 1.0) for i in independent]
+        entries += [(s, place[k], c) for s, terms in rows.items() for k, c in terms.items()]
+        i, j, v = (np.array(column) for column in zip(*entries, strict=True))
+        return sp.csr_matrix((v.astype(float), (i.astype(int), j.astype(int))), shape=(n, len(independent)))
+
+    def _rigid_motions(self) -> Floats:
+        """(unknowns, 6): three shifts and three turns, for multigrid."""
+        x = self.problem.x - self.problem.x.mean(axis=0)
+        modes = np.zeros((6, self.n, 6))
+        for k in range(3):
+            modes[k, :, k] = 1.0
+            axis = np.eye(3)[k]
+            modes[3 + k, :, :3] = np.cross(axis, x)
+            modes[3 + k, :, 3 + k] = 1.0
+        return np.column_stack([mode.ravel()[self.where] for mode in modes])

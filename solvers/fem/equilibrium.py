@@ -1,0 +1,173 @@
+"""Equilibrium of one step: Newton's method with its variants, and steps that are cut where it does not converge."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .assembly import Assembly, Mechanism
+from .group import Bad
+from .problem import Iteration
+from .shape import Shape
+
+Floats = NDArray[np.float64]
+SEARCHED = 0.8  # line search is done where the work along the step stays above this share
+SLACK = 1e-13  # of the forces: less is round-off
+
+
+class NotConverged(ArithmeticError):
+    """A step without equilibrium. worst: (node index, dof) where most is missing, or None."""
+
+    def __init__(self, cause: str, worst: tuple[int, int] | None = None) -> None:
+        super().__init__(cause)
+        self.cause = cause
+        self.worst = worst
+
+
+@dataclass(slots=True)
+class Trace:
+    """How a step's iterations went: residual forces over the loads, by iteration."""
+
+    residuals: list[float] = field(default_factory=list)
+    factorisations: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """What a step goes to.
+
+    change: (n, 6) prescribed change of displacement; external: forces (n, 6) at a shape; inertia: forces (n, 6) that
+    grow with the change since the step's start, or None, their matrix (values of the structure), and the factor of the
+    static stiffness in the whole matrix.
+    """
+
+    change: Floats
+    external: Callable[[Shape], Floats]
+    inertia: Callable[[Shape], Floats] | None = None
+    inertia_matrix: Floats | None = None
+    share: float = 1.0
+
+
+def equilibrium(
+    assembly: Assembly, start: Shape, target: Target, dt: float, how: Iteration, *, definite: bool = True
+) -> tuple[Shape, Floats, Trace]:
+    """The shape in equilibrium, the internal forces (n, 6) and how the iterations went. Raises NotConverged."""
+    trace = Trace()
+    shape = start
+    prescribed = target.change
+    moved = prescribed if prescribed.any() else None
+    first_energy = 0.0
+    loads = target.external(shape)
+    internal, of_motion = _evaluate(assembly, shape, start, dt, stiff=True, moved=moved)
+    residual = _residual(assembly, target, shape, loads, internal, of_motion)
+    scale = max(_size(loads), _size(of_motion), _size(internal))
+    for iteration in range(how.most):
+        if iteration == 0 or how.method == "newton":
+            if iteration:
+                internal, _ = _evaluate(assembly, shape, start, dt, stiff=True, moved=None)
+            definite = _factor(assembly, target, definite=definite)
+            trace.factorisations += 1
+        step = assembly.expand(assembly.solve(residual))
+        if iteration == 0 and moved is not None:
+            step = step + prescribed
+        along = float(residual @ assembly.gather(step)) if iteration else 0.0
+        trial = shape.moved(step)
+        loads = target.external(trial)
+        internal, _ = _evaluate(assembly, trial, start, dt, stiff=False, moved=None)
+        left = _residual(assembly, target, trial, loads, internal, None)
+        if how.search and iteration:
+            trial, loads, internal, left = _searched(assembly, target, shape, start, step, dt, left, along, (trial, loads, internal))
+        scale = max(scale, _size(loads), _size(internal))
+        energy = abs(float(residual @ assembly.gather(step)))
+        if iteration == 0:
+            first_energy = max(energy, _energy(loads, step))
+        shape, residual = trial, left
+        size = float(np.abs(residual).max(initial=0.0)) / scale if scale else 0.0
+        trace.residuals.append(size)
+        if not math.isfinite(size):
+            raise NotConverged("the forces are not finite")
+        if _converged(how, size, energy, first_energy, step, shape, start):
+            return shape, internal, trace
+    worst = divmod(int(assembly.where[int(np.argmax(np.abs(residual)))]), 6) if assembly.transform is None else None
+    raise NotConverged(
+        f"no equilibrium after {how.most} iterations: the residual force is {trace.residuals[-1]:.1e} of the loads", worst
+    )
+
+
+def _evaluate(
+    assembly: Assembly, shape: Shape, start: Shape, dt: float, *, stiff: bool, moved: Floats | None
+) -> tuple[Floats, Floats]:
+    try:
+        return assembly.evaluate(shape, start, dt, stiff=stiff, moved=moved)
+    except Bad as error:
+        raise NotConverged(f"element {error.element}: {error.cause}") from error
+
+
+def _factor(assembly: Assembly, target: Target, *, definite: bool) -> bool:
+    """Factor; past a limit point the matrix is no longer definite. Returns whether it was."""
+    try:
+        assembly.factor(extra=target.inertia_matrix, scale=target.share, definite=definite)
+    except Mechanism:
+        if not definite or not assembly.structure.symmetric:
+            raise
+        assembly.factor(definite=False)
+        return False
+    return definite
+
+
+def _residual(
+    assembly: Assembly, target: Target, shape: Shape, loads: Floats, internal: Floats, of_motion: Floats | None
+) -> Floats:
+    out = loads - internal
+    if target.inertia is not None:
+        out = out - target.inertia(shape)
+    if of_motion is not None:
+        out = out - target.share * of_motion
+    return assembly.gather(out)
+
+
+def _searched(
+    assembly: Assembly, target: Target, shape: Shape, start: Shape, step: Floats, dt: float, left: Floats, along: float,
+    found: tuple[Shape, Floats, Floats],
+) -> tuple[Shape, Floats, Floats, Floats]:  # fmt: skip
+    """Where the work along the step vanishes, by a few secants (Crisfield 1991, 9.2)."""
+    trial, loads, internal = found
+    direction = assembly.gather(step)
+    share, before, g0 = 1.0, 0.0, along
+    for _ in range(4):
+        g = float(left @ direction)
+        if abs(g) <= SEARCHED * abs(along) or g0 == g:
+            break
+        share, before = min(max(share - g * (share - before) / (g - g0), 0.1), 2.0), share
+        g0 = g
+        trial = shape.moved(share * step)
+        loads = target.external(trial)
+        internal, _ = _evaluate(assembly, trial, start, dt, stiff=False, moved=None)
+        left = _residual(assembly, target, trial, loads, internal, None)
+    return trial, loads, internal, left
+
+
+def _converged(
+    how: Iteration, size: float, energy: float, first_energy: float, step: Floats, shape: Shape, start: Shape
+) -> bool:
+    if size <= SLACK:
+        return True
+    if how.energy and energy > how.energy * first_energy:
+        return False
+    if how.displacement:
+        moved = float(np.abs(shape.u - start.u).max())
+        if float(np.abs(step).max()) > how.displacement * moved:
+            return False
+    return not how.force or size <= how.force
+
+
+def _size(forces: Floats) -> float:
+    return float(np.abs(forces).max(initial=0.0))
+
+
+def _energy(forces: Floats, step: Floats) -> float:
+    return abs(float((forces * step).sum()))

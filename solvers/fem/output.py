@@ -1,0 +1,97 @@
+"""What a finite element run shows: nodal and element arrays, sums, energies."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..frame import Cells, Frame
+from ..materials import Elastic
+from .problem import SMALL, Problem
+
+if TYPE_CHECKING:
+    from .solver import Solver
+
+Floats = NDArray[np.float64]
+
+
+def is_linear(problem: Problem) -> bool:
+    """Whether one factorisation answers all steps: linear laws, small displacements, loads that do not follow."""
+    return all(isinstance(e.law, Elastic) and e.geometry == SMALL for e in problem.elements) and not any(
+        load.follows for load in problem.face_loads
+    ) and not any(m.incremental for m in problem.motions)
+
+
+def von_mises(stress: Floats) -> Floats:
+    """Of stresses (..., 6)."""
+    xx, yy, zz, xy, yz, zx = np.moveaxis(stress, -1, 0)
+    square = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3.0 * (xy**2 + yz**2 + zx**2)
+    out: Floats = np.sqrt(square)
+    return out
+
+
+def frame(solver: Solver) -> Frame:
+    """Nodes and elements of a solver, in the order of the deck."""
+    p, a = solver.problem, solver.assembly
+    u = solver.shape.u
+    nodes = {
+        "position": p.x + u[:, :3],
+        "id": p.node_ids,
+        "displacement": u[:, :3],
+        "reaction": solver.reaction[:, :3],
+        "stress": _nodal_stress(solver),
+    }
+    if any(g.dofs.max(initial=0) > 2 for g in a.groups):
+        nodes["rotation"] = u[:, 3:]
+        nodes["moment"] = solver.reaction[:, 3:]
+    nodes["von_mises"] = von_mises(nodes["stress"])
+    blocks = []
+    for group in a.groups:
+        e = group.elements
+        data = group.output()
+        count = len(e.ids)
+        data |= {"id": e.ids, "material": np.full(count, e.material), "von_mises": von_mises(data["stress"])}
+        thickness = np.zeros(count) if e.thickness is None else np.asarray(e.thickness, dtype=float)
+        data["thickness"] = thickness if thickness.ndim == 1 else thickness.mean(axis=1)
+        data.setdefault("plastic_strain", np.zeros(count))
+        blocks.append(Cells(e.kind, e.nodes, data))
+    return Frame(time=solver.time, step=solver.step, particles={}, nodes=nodes, cells=blocks)
+
+
+def _nodal_stress(solver: Solver) -> Floats:
+    """Stresses at nodes: extrapolated from the integration points, averaged by the elements' volume."""
+    n = solver.n
+    total, weight = np.zeros((n, 6)), np.zeros(n)
+    for group in solver.assembly.groups:
+        stress, volume = group.at_nodes()
+        share = np.repeat(volume[:, None], group.elements.nodes.shape[1], axis=1)
+        weight += np.bincount(group.elements.nodes.ravel(), share.ravel(), minlength=n)
+        for c in range(6):
+            total[:, c] += np.bincount(group.elements.nodes.ravel(), (stress[:, :, c] * share).ravel(), minlength=n)
+    return total / np.maximum(weight, 1e-300)[:, None]
+
+
+def history(solver: Solver, energies: dict[str, float]) -> dict[str, float]:
+    """One row: energies, sums of loads and reactions, the largest displacement."""
+    loads, reactions = solver.external_forces[:, :3].sum(axis=0), solver.reaction[:, :3].sum(axis=0)
+    row = {"time": solver.time, "dt": solver.dt, **energies}
+    row |= dict.fromkeys(("momentum_x", "momentum_y", "momentum_z"), 0.0)
+    row |= dict.fromkeys(("contact_force_x", "contact_force_y", "contact_force_z"), 0.0)
+    row["active"] = float(sum(len(g.elements.ids) for g in solver.assembly.groups))
+    for k, axis in enumerate("xyz"):
+        row[f"load_{axis}"], row[f"reaction_{axis}"] = float(loads[k]), float(reactions[k])
+    size = np.linalg.norm(solver.shape.u[:, :3], axis=1)
+    row["max_displacement"] = float(size.max(initial=0.0))
+    row["iterations"] = float(solver.iterations)
+    row["step"] = float(solver.step)
+    return row
+
+
+def energy_report(energies: dict[str, float]) -> dict[str, float]:
+    """Energies at the start (none) and now, and how far their balance is out."""
+    made = energies["kinetic"] + energies["internal"] - energies["external_work"]
+    largest = max(abs(v) for v in energies.values()) or 1.0
+    return {"initial": 0.0, "final": energies["kinetic"] + energies["internal"], **energies,
+            "balance_error": abs(made) / largest}  # fmt: skip
