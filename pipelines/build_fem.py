@@ -1,0 +1,279 @@
+"""From a finite element deck's model to the solver's problem: names and numbers change hands, nothing is computed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from zrno.pipelines.laws import law_of
+from zrno.solvers import fem
+from zrno.solvers.errors import Unsupported
+from zrno.translators.control import FemControl
+from zrno.translators.elements import TABLE
+from zrno.translators.model import ElementBlock, FaceLoad, Model, NodalLoad, Section
+from zrno.translators.text import Fault, InputError
+
+_GEOMETRY = {0: fem.SMALL, 1: fem.SMALL, 2: fem.TOTAL, 3: fem.UPDATED, 4: fem.UPDATED, 5: fem.UPDATED}
+_MODES = {"hex8": 9, "quad4": 4}  # enhanced strains where a deck asks for incompatible modes
+_FACES = {3: "tri3", 4: "quad4", 6: "tri6", 8: "quad8", 9: "quad9"}
+_COMPUTED = ("solid", "plane", "truss", "beam", "shell", "spring", "mass")
+
+
+def structure_problem(model: Model, path: str) -> fem.Problem:
+    """The problem that a finite element deck poses. path: of the deck.
+
+    Raises InputError for what the deck asks and this solver does not do.
+    """
+    control = model.fem_control
+    if control is None:
+        raise InputError([Fault(path, 1, 1, "not a finite element deck", model.format, "a .dat deck of PAK")])
+    faults = _refusals(model, control, path)
+    if faults:
+        raise InputError(sorted(faults))
+    numbers = sorted(model.curves)
+    n = len(model.xyz)
+    plain = all(_iatyp(model.sections[part.section]) == 0 for part in model.parts.values() if part.section)
+    return fem.Problem(
+        title=model.title,
+        dimension=model.dimension,
+        x=model.xyz,
+        node_ids=model.node_ids,
+        elements=tuple(_elements(model)),
+        fixed=_fixed(model, control),
+        curves=tuple(fem.Curve(*model.curves[k].points.T.copy()) for k in numbers),
+        nodal_loads=tuple(_force(load, numbers) for load in model.nodal_loads if load.kind == "force"),
+        motions=tuple(_motion(m, numbers) for m in model.nodal_loads if m.kind == "displacement" and not _initial(m)),
+        face_loads=tuple(f for load in model.face_loads for f in _face_loads(model, load, numbers, follows=not plain)),
+        body_loads=tuple(
+            fem.BodyLoad(np.array(b.acceleration), _index(b.curve, numbers), _materials(model, b.parts))
+            for b in model.body_loads
+        ),
+        relations=tuple(
+            fem.Relation(int(e.nodes[0]), int(e.dofs[0]) - 1, e.nodes[1:], e.dofs[1:] - 1,
+                         -e.coefficients[1:] / e.coefficients[0])
+            for e in model.equations
+        ),
+        steps=tuple(control.periods) or ((1, 1.0),),
+        iteration=_iteration(control),
+        dynamics=_dynamics(control),
+        modes=control.eigen_count if control.eigenvalues else 0,
+        displacement=_initial_values(model, "displacement", n),
+        velocity=_velocities(model, n),
+    )  # fmt: skip
+
+
+def _refusals(model: Model, control: FemControl, path: str) -> list[Fault]:
+    """What a deck asks and is not computed, each with its place."""
+    faults = []
+    for part in model.parts.values():
+        section = model.sections.get(part.section or -1)
+        line = section.source.line if section and section.source else 1
+        if section and section.kind not in _COMPUTED:
+            faults.append(Fault(path, line, 1, f"elements of the family {section.kind} are not computed yet", "",
+                                ", ".join(_COMPUTED)))  # fmt: skip
+        material = model.materials.get(part.material or -1)
+        if material is None:
+            continue
+        at = material.source.line if material.source else 1
+        try:
+            law_of(material, None, model.curves)
+        except (Unsupported, ValueError) as error:
+            faults.append(Fault(path, at, 1, f"material {material.id}: {error}", "", "a law that is computed"))
+    if control.restart == 1:
+        faults.append(Fault(path, 1, 1, "a restart of PAK's own files is not read", "IREST 1", "--resume"))
+    return list(dict.fromkeys(faults))
+
+
+def _iatyp(section: Section) -> int:
+    return abs(int(section.native.get("IATYP", 0)))
+
+
+def _elements(model: Model) -> list[fem.Elements]:
+    found = []
+    for block in model.blocks:
+        for part in np.unique(block.part).tolist():
+            rows = block.part == part
+            if block.kind in TABLE and model.parts[part].section is not None:
+                found.append(_group(model, block, rows, part))
+    return found
+
+
+def _group(model: Model, block: ElementBlock, rows: Any, part: int) -> fem.Elements:
+    own = model.parts[part]
+    section, material = model.sections[own.section or 0], model.materials[own.material or 0]
+    native, parameters = section.native, section.parameters
+    data = {name: values[rows] for name, values in block.data.items()}
+    family = block.family or section.kind
+    asked = int(native.get("IALFA", 0))
+    gauss = tuple(int(native.get(f"NGAUS{axis}", 0)) for axis in "XYZ")
+    ids = block.ids[rows]
+    solid = family == "solid"
+    law = law_of(material, None, model.curves)
+    thickness = data.get("thickness")
+    if thickness is None and "thickness" in parameters:
+        thickness = np.full(len(ids), parameters["thickness"])
+    return fem.Elements(
+        kind=block.kind,
+        family=family,
+        nodes=np.ascontiguousarray(block.nodes[rows]),
+        ids=ids,
+        material=material.id,
+        law=law,
+        density=material.density,
+        geometry=_GEOMETRY[_iatyp(section)],
+        gauss=(gauss if solid else gauss[:2]) if block.kind.startswith(("hex", "quad")) else (),
+        modes=_MODES.get(block.kind, 0) if asked != -1 else 0,
+        mean=asked == -1 and block.kind == "hex8" and _iatyp(section) == 1,
+        plane=section.plane if family == "plane" else "",
+        thickness=thickness,
+        layers=gauss[2] or 2,
+        section={k: v for k, v in parameters.items() if isinstance(v, float)},
+        orientation=data.get("orientation"),
+        value=data.get("area"),
+        birth=data.get("birth"),
+        death=data.get("death"),
+    )
+
+
+def _fixed(model: Model, control: FemControl) -> Any:
+    fixed = np.zeros((len(model.xyz), 6), bool) if model.fixed is None else model.fixed.copy()
+    if control.suppressed is not None:
+        fixed |= np.array(control.suppressed, bool)
+    for constraint in model.constraints:
+        fixed[constraint.nodes] |= constraint.dofs
+    return fixed
+
+
+def _index(curve: int | None, numbers: list[int]) -> int | None:
+    return None if curve is None else numbers.index(curve)
+
+
+def _initial(load: NodalLoad) -> bool:
+    return bool(load.native.get("initial"))
+
+
+def _force(load: NodalLoad, numbers: list[int]) -> fem.NodalLoad:
+    shift = float(load.native.get("FPOM", 0.0))
+    return fem.NodalLoad(load.nodes, load.dofs - 1, load.values, _index(load.curve, numbers), shift)
+
+
+def _motion(load: NodalLoad, numbers: list[int]) -> fem.Motion:
+    return fem.Motion(load.nodes, load.dofs - 1, load.values, _index(load.curve, numbers),
+                      bool(load.native.get("incremental")))  # fmt: skip
+
+
+def _face_loads(model: Model, load: FaceLoad, numbers: list[int], *, follows: bool) -> list[fem.FaceLoad]:
+    """A load for each shape of its faces, with the values of corners brought to mid-side nodes."""
+    flat = model.dimension == 2
+    count = (load.faces >= 0).sum(axis=1)
+    if load.faces.shape[1] > 3:  # triangles with mid-side nodes lie behind an absent fourth corner
+        count = np.where(load.faces[:, 3] < 0, np.where(count > 3, 6, 3), count)
+    found = []
+    for size in np.unique(count).tolist():
+        rows = count == size
+        kind = {2: "line2", 3: "line3"}[size] if flat else _FACES[size]
+        order = [0, 1, 2, 4, 5, 6] if kind == "tri6" else list(range(size))
+        nodes = load.faces[rows][:, order]
+        values = load.values[rows]
+        if values.shape[1] == 1:
+            values = np.repeat(values, size, axis=1)
+        else:
+            values = _to_nodes(values, kind)
+        thickness = np.full(len(nodes), load.native.get("THICV") or 1.0) if flat else None
+        plane = next((s.plane for s in model.sections.values() if s.plane), "") if flat else ""
+        if flat:
+            nodes, values = _outward(model, nodes, values)
+        found.append(fem.FaceLoad(kind, nodes, values, load.direction, _index(load.curve, numbers),
+                                  follows and load.direction == 0, thickness, plane))  # fmt: skip
+    return found
+
+
+def _to_nodes(corners: Any, kind: str) -> Any:
+    """Values (f, c) at corners of faces as values (f, n) at all nodes: linear along the edges."""
+    element = TABLE[kind]
+    own = corners[:, : element.shape.corners]
+    pieces = [own] + [0.5 * (own[:, a] + own[:, b])[:, None] for a, b in element.shape.edges if element.mid_edges]
+    if kind == "quad9":
+        pieces.append(own.mean(axis=1)[:, None])
+    return np.column_stack(pieces)
+
+
+def _outward(model: Model, edges: Any, values: Any) -> tuple[Any, Any]:
+    """Edges of plane elements turned so that pressure, which acts to the left of their way, goes into the element."""
+    centres: dict[tuple[int, int], Any] = {}
+    wanted = {tuple(sorted(map(int, edge[:2]))) for edge in edges}
+    for block in model.blocks:
+        for a, b in TABLE[block.kind].shape.edges or ((0, 1),):
+            pairs = np.sort(block.nodes[:, [a, b]], axis=1)
+            for i in np.flatnonzero([tuple(p) in wanted for p in pairs.tolist()]).tolist():
+                centres[tuple(pairs[i].tolist())] = model.xyz[block.nodes[i]].mean(axis=0)
+    edges, values = edges.copy(), values.copy()
+    for k, edge in enumerate(edges):
+        centre = centres.get(tuple(sorted(map(int, edge[:2]))))
+        if centre is None:
+            continue
+        way, inward = model.xyz[edge[1]] - model.xyz[edge[0]], centre - model.xyz[edge[0]]
+        if way[0] * inward[1] - way[1] * inward[0] < 0.0:
+            edges[k, :2], values[k, :2] = edge[1::-1], values[k, 1::-1]
+    return edges, values
+
+
+def _materials(model: Model, parts: tuple[int, ...] | None) -> tuple[int, ...] | None:
+    return None if parts is None else tuple(model.parts[p].material or 0 for p in parts)
+
+
+def _iteration(control: FemControl) -> fem.Iteration:
+    """PAK's METOD and tolerances. Forces are to be in balance to 1e-6 whatever the deck's own tolerances allow."""
+    method = control.iteration
+    energy, force, moment = (t if on else 0.0 for t, on in zip(control.tolerances, control.converge_on, strict=False))
+    arc = None
+    if method >= 60:
+        names = ("option", "node", "dof", "first", "factor", "length", "largest_displacement", "largest_load")
+        arc = dict(zip(names, control.loading, strict=False))
+    return fem.Iteration(
+        method="newton",
+        search=method in (4, 63),
+        arc=arc,
+        most=max(control.max_iterations, 15),
+        energy=energy,
+        force=min(force, FORCE) if force else FORCE,
+        moment=moment,
+    )
+
+
+FORCE = 1e-6  # unbalanced force over the largest one
+
+
+def _dynamics(control: FemControl) -> fem.Dynamics | None:
+    if not control.dynamic or control.eigenvalues:
+        return None
+    first, second = control.integration_parameters
+    method = {1: "wilson", 2: "newmark", -2: "newmark", 3: "central"}.get(control.integration, "newmark")
+    rayleigh = control.rayleigh if control.damping == 3 else (0.0, 0.0)
+    return fem.Dynamics(
+        method=method,
+        gamma=first if method == "newmark" else 0.5,
+        beta=second if method == "newmark" else 0.25,
+        theta=first if method == "wilson" else 1.4,
+        lumped=control.mass == 2 or method == "central",
+        mass_damping=rayleigh[0],
+        stiffness_damping=rayleigh[1],
+    )
+
+
+def _initial_values(model: Model, kind: str, n: int) -> Any:
+    values = np.zeros((n, 6))
+    for load in model.nodal_loads:
+        if load.kind == kind and _initial(load):
+            values[load.nodes, load.dofs - 1] = load.values
+    return values if values.any() else None
+
+
+def _velocities(model: Model, n: int) -> Any:
+    values = np.zeros((n, 6))
+    for start in model.initial_velocities:
+        values[start.nodes, :3] = start.velocity
+        if start.rotation is not None:
+            values[start.nodes, 3:] = start.rotation
+    return values if values.any() else None
