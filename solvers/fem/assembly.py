@@ -7,8 +7,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from . import linear, structure
-from .group import Group, Sink
-from .kinds import make_group
+from .group import Sink
+from .kinds import make_groups
 from .problem import Problem
 from .shape import Shape
 
@@ -32,7 +32,7 @@ class Assembly:
         self.problem = problem
         self.threads = threads
         self.n = len(problem.x)
-        self.groups: list[Group] = [make_group(e, problem.x) for e in problem.elements]
+        self.groups = make_groups(problem)
         active = np.zeros((self.n, 6), bool)
         for group in self.groups:
             used = np.unique(group.elements.nodes)

@@ -405,7 +405,7 @@ def integrate(
                                 mixed[m, i, k] += extra[r, m] * stiff[r, i, k]
                                 back[m, i, k] += rows[r, i, k] * stiff_extra[r, m]
         if modes is not None and matrix is not None:
-            _condense(inner, residual, mixed, back, modes, c, n, q, matrix, forces, answer, rest)
+            condense(inner, residual, mixed, back, modes, c, n, q, matrix, forces, answer, rest)
         elif modes is not None:
             for i in range(c):  # what the enhanced parameters are out of balance by, through the last stiffness
                 for k in range(n):
@@ -432,7 +432,7 @@ def _geometric(gradient, values, g, n, c, d, plane, radius, stress, at, dv, matr
 
 
 @kernel
-def _condense(inner, residual, mixed, back, modes, c, n, q, matrix, forces, answer, rest):
+def condense(inner, residual, mixed, back, modes, c, n, q, matrix, forces, answer, rest):
     """Gauss elimination of the enhanced parameters; pivots stand on the diagonal, as stiffness is."""
     for m in range(modes):
         rest[q, m] = residual[m]

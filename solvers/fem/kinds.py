@@ -2,25 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
-import numpy as np
-from numpy.typing import NDArray
-
 from .bars import BarGroup
 from .continuum_group import ContinuumGroup
+from .directors import directors
 from .group import Group
-from .problem import Elements
-
-_CLASSES: dict[str, Callable[[Elements, NDArray[np.float64]], Group]] = {
-    "solid": ContinuumGroup,
-    "plane": ContinuumGroup,
-    "truss": BarGroup,
-}
+from .problem import Problem
+from .shells import ShellGroup
 
 
-def make_group(elements: Elements, x: NDArray[np.float64]) -> Group:
-    """The group of some elements of a structure with nodes at x (n, 3). ValueError for a family that is not computed."""
-    if elements.family not in _CLASSES:
-        raise ValueError(f"elements of the family {elements.family!r} are not computed")
-    return _CLASSES[elements.family](elements, x)
+def make_groups(problem: Problem) -> list[Group]:
+    """The groups of a problem. ValueError for a family that is not computed."""
+    shells = [k for k, e in enumerate(problem.elements) if e.family == "shell"]
+    corners = [problem.elements[k].nodes[:, :4] for k in shells]
+    normals = dict(zip(shells, directors(problem.x, corners, problem.fixed), strict=True)) if shells else {}
+    groups: list[Group] = []
+    for k, e in enumerate(problem.elements):
+        if e.family in ("solid", "plane"):
+            groups.append(ContinuumGroup(e, problem.x))
+        elif e.family == "truss":
+            groups.append(BarGroup(e, problem.x))
+        elif e.family == "shell" and e.kind == "quad4":
+            groups.append(ShellGroup(e, problem.x, normals[k]))
+        else:
+            raise ValueError(f"elements {e.kind} of the family {e.family!r} are not computed")
+    return groups
