@@ -10,12 +10,12 @@ LIMIT = 0.05  # of the largest energy; the samples end below 0.01
 class Balance:
     """Observer: since when the energy balance error has been above `LIMIT`.
 
-    interval: simulated time between looks; step_factor: that of the run, for the message.
+    interval: simulated time between looks; step_factor: that of the run, for the message; None of a run without one.
     """
 
     exact = False
 
-    def __init__(self, *, interval: float | None, step_factor: float) -> None:
+    def __init__(self, *, interval: float | None, step_factor: float | None) -> None:
         self.interval = interval
         self._step_factor = step_factor
         self._since: float | None = None
@@ -45,10 +45,14 @@ class Balance:
         error = _error(solver)
         out = f"{error:.0%} of" if error < 10 else f"{error:.3g} times"
         passed = f"was above {LIMIT:.0%} when the run was resumed at" if self._resumed else f"passed {LIMIT:.0%} at"
+        cause = (
+            "steps that are too long for the path of loading or of plastic flow, try more of them"
+            if self._step_factor is None
+            else f"a time step above the stable limit, try a step_factor below {self._step_factor:g}"
+        )
         return (
             f"the energy balance is out by {out} the largest of kinetic energy (at the start or now), internal energy "
-            f"and external work; it {passed} t = {self._since:.4g}: the likely cause is a time step above the stable "
-            f"limit, try a step_factor below {self._step_factor:g}"
+            f"and external work; it {passed} t = {self._since:.4g}: the likely cause is {cause}"
         )
 
 

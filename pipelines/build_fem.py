@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from zrno.pipelines.fem_method import Fem
 from zrno.pipelines.laws import law_of
 from zrno.solvers import fem
 from zrno.solvers.errors import Unsupported
@@ -20,26 +21,28 @@ _FACES = {3: "tri3", 4: "quad4", 6: "tri6", 8: "quad8", 9: "quad9"}
 _COMPUTED = ("solid", "plane", "truss", "beam", "shell", "spring", "mass")
 
 
-def structure_problem(model: Model, path: str) -> fem.Problem:
-    """The problem that a finite element deck poses. path: of the deck.
+def structure_problem(model: Model, path: str, method: Fem | None = None) -> fem.Problem:
+    """The problem that a finite element deck poses. path: of the deck; method: what the scene says beyond it.
 
     Raises InputError for what the deck asks and this solver does not do.
     """
     control = model.fem_control
     if control is None:
         raise InputError([Fault(path, 1, 1, "not a finite element deck", model.format, "a .dat deck of PAK")])
-    faults = _refusals(model, control, path)
+    faults = refusals(model, path)
     if faults:
         raise InputError(sorted(faults))
+    method = method or Fem()
     numbers = sorted(model.curves)
     n = len(model.xyz)
-    plain = all(_iatyp(model.sections[part.section]) == 0 for part in model.parts.values() if part.section)
+    elements = tuple(_elements(model, method))
+    plain = all(e.geometry == fem.SMALL for e in elements)
     return fem.Problem(
         title=model.title,
         dimension=model.dimension,
         x=model.xyz,
         node_ids=model.node_ids,
-        elements=tuple(_elements(model)),
+        elements=elements,
         fixed=_fixed(model, control),
         curves=tuple(fem.Curve(*model.curves[k].points.T.copy()) for k in numbers),
         nodal_loads=tuple(_force(load, numbers) for load in model.nodal_loads if load.kind == "force"),
@@ -54,17 +57,20 @@ def structure_problem(model: Model, path: str) -> fem.Problem:
                          -e.coefficients[1:] / e.coefficients[0])
             for e in model.equations
         ),
-        steps=tuple(control.periods) or ((1, 1.0),),
-        iteration=_iteration(control),
+        steps=_steps(control, method),
+        iteration=_iteration(control, method),
         dynamics=_dynamics(control),
         modes=control.eigen_count if control.eigenvalues else 0,
         displacement=_initial_values(model, "displacement", n),
         velocity=_velocities(model, n),
+        solver=method.solver,
     )  # fmt: skip
 
 
-def _refusals(model: Model, control: FemControl, path: str) -> list[Fault]:
-    """What a deck asks and is not computed, each with its place."""
+def refusals(model: Model, path: str) -> list[Fault]:
+    """What a deck asks and is not computed, each with its place. path: of the deck."""
+    control = model.fem_control
+    assert control is not None
     faults = []
     for part in model.parts.values():
         section = model.sections.get(part.section or -1)
@@ -89,23 +95,32 @@ def _iatyp(section: Section) -> int:
     return abs(int(section.native.get("IATYP", 0)))
 
 
-def _elements(model: Model) -> list[fem.Elements]:
+def _steps(control: FemControl, method: Fem) -> tuple[tuple[int, float], ...]:
+    periods = tuple(control.periods) or ((1, 1.0),)
+    if method.steps is None:
+        return periods
+    return ((method.steps, sum(count * length for count, length in periods) / method.steps),)
+
+
+def _elements(model: Model, method: Fem) -> list[fem.Elements]:
     found = []
     for block in model.blocks:
         for part in np.unique(block.part).tolist():
             rows = block.part == part
             if block.kind in TABLE and model.parts[part].section is not None:
-                found.append(_group(model, block, rows, part))
+                found.append(_group(model, block, rows, part, method))
     return found
 
 
-def _group(model: Model, block: ElementBlock, rows: Any, part: int) -> fem.Elements:
+def _group(model: Model, block: ElementBlock, rows: Any, part: int, method: Fem) -> fem.Elements:
     own = model.parts[part]
     section, material = model.sections[own.section or 0], model.materials[own.material or 0]
     native, parameters = section.native, section.parameters
     data = {name: values[rows] for name, values in block.data.items()}
     family = block.family or section.kind
-    asked = int(native.get("IALFA", 0))
+    enhanced = method.enhanced == "all" or (method.enhanced == "deck" and int(native.get("IALFA", 0)) != -1)
+    plastic = _iatyp(section) == 1
+    mean = method.dilatation == "mean" or (method.dilatation == "auto" and plastic)
     gauss = tuple(int(native.get(f"NGAUS{axis}", 0)) for axis in "XYZ")
     ids = block.ids[rows]
     solid = family == "solid"
@@ -121,10 +136,10 @@ def _group(model: Model, block: ElementBlock, rows: Any, part: int) -> fem.Eleme
         material=material.id,
         law=law,
         density=material.density,
-        geometry=_GEOMETRY[_iatyp(section)],
+        geometry=_GEOMETRY[_iatyp(section)] if method.geometry == "deck" else method.geometry,
         gauss=(gauss if solid else gauss[:2]) if block.kind.startswith(("hex", "quad")) else (),
-        modes=_MODES.get(block.kind, 0) if asked != -1 else 0,
-        mean=asked == -1 and block.kind == "hex8" and _iatyp(section) == 1,
+        modes=_MODES.get(block.kind, 0) if enhanced else 0,
+        mean=mean and not enhanced and block.kind in ("hex8", "quad4") and family != "shell",
         plane=section.plane if family == "plane" else "",
         thickness=thickness,
         layers=gauss[2] or 2,
@@ -223,22 +238,23 @@ def _materials(model: Model, parts: tuple[int, ...] | None) -> tuple[int, ...] |
     return None if parts is None else tuple(model.parts[p].material or 0 for p in parts)
 
 
-def _iteration(control: FemControl) -> fem.Iteration:
+def _iteration(control: FemControl, method: Fem) -> fem.Iteration:
     """PAK's METOD and tolerances. Forces are to be in balance to 1e-6 whatever the deck's own tolerances allow."""
-    method = control.iteration
+    metod = control.iteration
     energy, force, moment = (t if on else 0.0 for t, on in zip(control.tolerances, control.converge_on, strict=False))
     arc = None
-    if method >= 60:
+    if metod >= 60:
         names = ("option", "node", "dof", "first", "factor", "length", "largest_displacement", "largest_load")
         arc = dict(zip(names, control.loading, strict=False))
     return fem.Iteration(
-        method="newton",
-        search=method in (4, 63),
+        method=method.iteration,
+        search=metod in (4, 63) if method.search is None else method.search,
         arc=arc,
-        most=max(control.max_iterations, 15),
+        most=method.most or max(control.max_iterations, 15),
         energy=energy,
-        force=min(force, FORCE) if force else FORCE,
+        force=method.tolerance or (min(force, FORCE) if force else FORCE),
         moment=moment,
+        cuts=method.cuts,
     )
 
 

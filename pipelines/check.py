@@ -101,6 +101,10 @@ def _sound(path: Path, model: Model, places: Mapping[str, Place] | None = None) 
         wrong, missing = refusals(model, str(path), places)
         row["faults"] += map(asdict, sorted(wrong))
         row["warnings"] += map(_not_yet, sorted(missing))
+    if model.fem_control is not None:
+        from zrno.pipelines.build_fem import refusals as of_structure
+
+        row["warnings"] += map(_not_yet, sorted(of_structure(model, str(path))))
     return row
 
 

@@ -97,8 +97,13 @@ class Result:
             raise IndexError(f"no frame {index}; there are {count}")
         return pyvista.read(self.directory / self._frames[name][index % count][1])
 
+    @property
+    def whole(self) -> list[str]:
+        """The series of all that there is: "particles", "elements" or both."""
+        return [name for name in ("elements", "particles") if name in self._frames]
+
     def arrays(self, name: str = "particles", index: int = -1) -> dict[str, NDArray[Any]]:
-        """The point arrays of a frame by name, `position` (n, 3) with them."""
+        """The point arrays of a frame by name (of particles or of nodes), `position` (n, 3) with them."""
         mesh = self.mesh(name, index)
         return {"position": np.asarray(mesh.points)} | {
             key: np.asarray(mesh.point_data[key]) for key in mesh.point_data

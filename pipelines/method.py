@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError
+from pydantic import Field
 
-from zrno.pipelines.sections import Friction, NotNegative, Positive, Section
-from zrno.translators.text import Fault, InputError
+from zrno.pipelines.sections import Friction, NotNegative, Positive, Section, section_of_options
 
 Part = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
 Angle = Annotated[float, Field(ge=0, lt=90, allow_inf_nan=False)]
@@ -85,21 +84,4 @@ class Sph(Section):
 
 def of_options(options: Mapping[str, Any]) -> Sph:
     """The section that the keys `sph.*` of `--set` make. Raises InputError."""
-    data: dict[str, Any] = {}
-    for key, value in options.items():
-        *above, last = key.split(".")[1:]
-        place = data
-        for step in above:
-            place = place.setdefault(step, {})
-        place[last] = value
-    try:
-        return Sph.model_validate(data)
-    except ValidationError as error:
-        faults = []
-        for detail in error.errors():
-            name = ".".join(["sph", *(str(step) for step in detail["loc"])])
-            known = detail["type"] != "extra_forbidden"
-            message = f"{name} has a wrong value" if known else f"unknown key {name}"
-            expected = detail["msg"].removeprefix("Input should be ") if known else ", ".join(Sph.model_fields)
-            faults.append(Fault("--set", 1, 1, message, str(detail["input"]) if known else name, expected))
-        raise InputError(faults) from error
+    return section_of_options(Sph, "sph", options)

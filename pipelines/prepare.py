@@ -14,8 +14,9 @@ from zrno.pipelines import scene as scenes
 from zrno.pipelines.checkpoint import load_latest
 from zrno.pipelines.drafts import Draft, drafts
 from zrno.pipelines.manifest import digests
+from zrno.pipelines.fem_method import of_options as fem_of_options
 from zrno.pipelines.method import of_options
-from zrno.pipelines.quantities import field_names
+from zrno.pipelines.quantities import shown_names
 from zrno.pipelines.scene import Scene
 from zrno.translators import read
 from zrno.translators.model import Model
@@ -23,7 +24,7 @@ from zrno.translators.text import Fault, InputError
 from zrno.translators.yaml_marks import did_you_mean
 
 if TYPE_CHECKING:
-    from zrno.solvers.sph import Solver
+    from zrno.solvers import fem, sph
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +40,7 @@ class Prepared:
     digest: dict[str, str]
     model: Model
     made: list[dict[str, Any]]
-    solver: Solver
+    solver: sph.Solver | fem.Solver
     state: Mapping[str, Any] | None
     started: float
 
@@ -57,9 +58,6 @@ def prepare(
 
     Raises InputError for bad input, ValueError for a checkpoint that does not fit.
     """
-    from zrno.pipelines.build import particle_problem
-    from zrno.solvers.sph import Solver
-
     scene, decks = _decks(paths, chosen)
     refuse_what_is_not_run(decks)
     if scene is not None and scene.coupling is not None and len(decks) == 1:
@@ -79,11 +77,8 @@ def prepare(
         if scene is None:
             places = command_options.apply(chosen.settings, model)
         digest = {str(deck): next(iter(digests([draft.path if draft else deck]).values()))}
-        method = scene.sph if scene else of_options({k: v for k, v in chosen.scene.items() if k.startswith("sph.")})
-        original = chosen.run.get("compat") == "original"
         try:
-            problem = particle_problem(model, str(deck), places=places, original=original, method=method)
-            solver = Solver(problem, threads=threads)
+            solver = _solver(model, deck, scene, chosen, places, threads)
         except ValueError as error:  # things that do not go together
             if isinstance(error, InputError):
                 raise
@@ -99,13 +94,39 @@ def prepare(
         return Prepared(scene, deck, digest, model, [d.result for d in made], solver, state, started)
 
 
+def _solver(
+    model: Model,
+    deck: Path,
+    scene: Scene | None,
+    chosen: command_options.Options,
+    places: Mapping[str, Place],
+    threads: int | None,
+) -> sph.Solver | fem.Solver:
+    """The solver of a deck: finite elements of a .dat, particles of an .mcm."""
+    if model.fem_control is not None:
+        from zrno.pipelines.build_fem import structure_problem
+        from zrno.solvers import fem
+
+        of_structure = scene.fem if scene else fem_of_options(_section(chosen, "fem"))
+        return fem.Solver(structure_problem(model, str(deck), of_structure), threads=threads)
+    from zrno.pipelines.build import particle_problem
+    from zrno.solvers import sph
+
+    method = scene.sph if scene else of_options(_section(chosen, "sph"))
+    original = chosen.run.get("compat") == "original"
+    problem = particle_problem(model, str(deck), places=places, original=original, method=method)
+    return sph.Solver(problem, threads=threads)
+
+
+def _section(chosen: command_options.Options, name: str) -> dict[str, Any]:
+    """The options of a section of the scene."""
+    return {key: value for key, value in chosen.scene.items() if key.startswith(f"{name}.")}
+
+
 def refuse_what_is_not_run(decks: Sequence[Path]) -> None:
     """Refuse what later versions will run. Raises InputError."""
-    for deck in decks:
-        if deck.suffix.lower() == ".dat":
-            raise InputError([Fault(str(deck), 1, 1, "finite elements are not run yet", "", "a particle deck .mcm")])
     if len(decks) != 1:
-        raise InputError([Fault(str(decks[-1]), 1, 1, "one run takes one particle deck", "", "one .mcm or one scene")])
+        raise InputError([Fault(str(decks[-1]), 1, 1, "one run takes one deck", "", "one .mcm, one .dat or one scene")])
 
 
 def _decks(paths: Sequence[Path], chosen: command_options.Options) -> tuple[Scene | None, list[Path]]:
@@ -113,17 +134,17 @@ def _decks(paths: Sequence[Path], chosen: command_options.Options) -> tuple[Scen
     if len(paths) == 1 and paths[0].suffix.lower() in scenes.SUFFIXES:
         scene = scenes.load(paths[0], chosen.scene)
         return scene, [paths[0].parent / deck for deck in scene.decks]
-    unused = [key for key in chosen.scene if key not in chosen.settings and not key.startswith("sph.")]
+    unused = [key for key in chosen.scene if key not in chosen.settings and not key.startswith(("sph.", "fem."))]
     if unused:
         raise InputError([Fault("--set", 1, 1, f"{key} is for scenes", key, "a scene") for key in unused])
     return None, list(paths)
 
 
-def _check_pictures(scene: Scene, solver: Solver) -> None:
+def _check_pictures(scene: Scene, solver: sph.Solver | fem.Solver) -> None:
     """The fields that a scene's pictures show are fields of this solver's frames. Raises InputError."""
     if not scene.render:
         return
-    names = field_names(solver.frame().particles)
+    names = shown_names(solver.frame())
     faults = [
         scene.fault(("render", i, "field"), f"render.{i}.field: no such field", did_you_mean(picture.field, names))
         for i, picture in enumerate(scene.render)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from zrno.pipelines.units import SYSTEMS
+from zrno.solvers.frame import Frame
 
 _LABELS = {
     "id": "particle number",
@@ -57,6 +58,14 @@ def field_names(arrays: Mapping[str, NDArray[Any]]) -> list[str]:
         names.append(name)
         names += [f"{name}_{axis}" for axis in _AXES.get(values.shape[1], ())] if values.ndim == 2 else []
     return names
+
+
+def shown_names(frame: Frame) -> list[str]:
+    """What pictures of a frame may show: fields of its particles, its nodes and its elements."""
+    names = [*field_names(frame.particles), *field_names(frame.nodes)]
+    for cells in frame.cells:
+        names += field_names(cells.data)
+    return list(dict.fromkeys(names))
 
 
 def field(arrays: Mapping[str, NDArray[Any]], name: str) -> NDArray[Any]:

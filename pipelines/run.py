@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import sys
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,6 +22,7 @@ from zrno.pipelines.prepare import prepare
 from zrno.pipelines.progress import Progress
 from zrno.pipelines.scene import Scene
 from zrno.pipelines.series import ResultSeries
+from zrno.translators.control import FemControl
 from zrno.translators.model import Model
 from zrno.translators.text import Fault, InputError
 
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from zrno.solvers.time import Observer
 
 FRAMES = 20  # frames of a run whose deck names no interval
+SAVES = 20  # checkpoints of a structure's run, where the scene says nothing
 ROWS = 10  # rows of history a frame, where the deck names no interval for them
 
 log = logging.getLogger("zrno")
@@ -74,12 +76,12 @@ def run(
     from zrno.solvers.jit import compile_seconds
     from zrno.solvers.time import run as run_to_end
 
-    end = model.particle_control.end_time if model.particle_control else 0.0
+    end = solver.problem.end_time
     end = end if until is None else min(end, until)
 
     series, history, checkpointer = _observers(model, scene, directory, end, ready.digest, resume=state is not None)
     bar = Progress(end, show=progress)
-    balance = Balance(interval=history.interval, step_factor=solver.problem.step_factor)
+    balance = Balance(interval=history.interval, step_factor=getattr(solver.problem, "step_factor", None))
     watchers: list[Observer] = [series, history, checkpointer, balance, bar]
     result: dict[str, Any] = {}
     with _log_file(directory, append=state is not None):
@@ -98,7 +100,7 @@ def run(
         for warning in model.warnings:
             log.warning(warning)
         model.warnings += [line for report in ready.made for line in losses(report, "dropped")]
-        log.info("%s: %d particles, end time %g; built for %s", deck.name, solver.n, end, solver.kernels())
+        log.info("%s: %s, end time %g; built for %s", deck.name, _counted(model), end, solver.kernels())
         if state is not None:
             log.info("resumed at t = %g, step %d", solver.time, solver.step)
         steps_before = solver.step
@@ -129,10 +131,10 @@ def run(
                 "time": solver.time,
                 "wall_seconds": time.perf_counter() - ready.started,
                 "compile_seconds": compile_seconds(),
-                "particles": solver.n,
-                "nodes": 0,
-                "elements": 0,
-                "particle_steps_per_second": solver.n * (solver.step - steps_before) / max(seconds, 1e-9),
+                "particles": model.particle_count(),
+                "nodes": len(model.xyz),
+                "elements": sum(model.element_counts().values()),
+                "particle_steps_per_second": model.particle_count() * (solver.step - steps_before) / max(seconds, 1e-9),
                 "energy": solver.energy_report(),
                 "output": str(directory),
                 "warnings": list(model.warnings),
@@ -160,7 +162,8 @@ def _observers(
     model: Model, scene: Scene | None, directory: Path, end: float, decks: Mapping[str, str], *, resume: bool
 ) -> tuple[ResultSeries, History, Checkpointer]:
     control = model.particle_control
-    assert control is not None
+    if control is None:
+        return _step_observers(model, scene, directory, decks, resume=resume)
     frames = (scene.output.every if scene else None) or control.output_interval or max(end, 1e-300) / FRAMES
     rows = control.history_interval or frames / ROWS
     saves = scene.checkpoint.every if scene and scene.checkpoint else frames
@@ -178,12 +181,50 @@ def _observers(
     )
 
 
+def _step_observers(
+    model: Model, scene: Scene | None, directory: Path, decks: Mapping[str, str], *, resume: bool
+) -> tuple[ResultSeries, History, Checkpointer]:
+    """Of a structure: a row and a frame a step, or the steps that the deck plots; checkpoints some times a run."""
+    fem = model.fem_control
+    assert fem is not None
+    every = scene.output.every if scene else None
+    steps = sum(count for count, _ in fem.periods) or 1
+    saves = scene.checkpoint.every if scene and scene.checkpoint else None
+    return (
+        ResultSeries(
+            directory,
+            {i: m.name for i, m in model.materials.items()},
+            interval=every,
+            format=scene.output.format if scene else "vtp",
+            resume=resume,
+            wanted=None if every else _plotted(fem),
+        ),
+        History(directory, interval=None, units=scene.system.labels(3) if scene and scene.system else {}, resume=resume),
+        Checkpointer(directory, interval=saves, every=max(1, steps // SAVES), inputs=decks),
+    )
+
+
+def _plotted(fem: FemControl) -> Callable[[int], bool]:
+    """Whether a deck plots a step: in one of its blocks (first, increment, last), else every so many."""
+    blocks = fem.plot_blocks
+    if blocks:
+        return lambda step: step == 0 or any(a <= step <= c and (step - a) % max(b, 1) == 0 for a, b, c, _ in blocks)
+    return lambda step: True
+
+
+def _counted(model: Model) -> str:
+    if model.fem_control is not None:
+        return f"{len(model.xyz)} nodes, {sum(model.element_counts().values())} elements"
+    return f"{model.particle_count()} particles"
+
+
 def _all_options(
     scene: Scene | None, model: Model, chosen: command_options.Options, until: float | None
 ) -> dict[str, Any]:
     from dataclasses import asdict
 
-    control = asdict(model.particle_control) if model.particle_control else {}
+    said = model.particle_control or model.fem_control
+    control = asdict(said) if said else {}
     control.pop("places", None)
     return {
         "scene": scene.model_dump() if scene else None,

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, PrivateAttr, ValidationError, field_validator
 from pydantic_core import ErrorDetails
 
+from zrno.pipelines.fem_method import Fem
 from zrno.pipelines.method import Sph
 from zrno.pipelines.sections import Friction, Positive, Section, wrong
 from zrno.pipelines.study_scene import Study
@@ -114,6 +115,7 @@ class Scene(Section):
     checkpoint: Checkpoint | None = None
     study: Study | None = None
     sph: Sph = Field(default_factory=Sph)
+    fem: Fem = Field(default_factory=Fem)
     _document: Marked = PrivateAttr(default_factory=lambda: Marked("scene", {}, Faults("scene")))
 
     @field_validator("decks")

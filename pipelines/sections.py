@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import Annotated, Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationInfo, field_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, ValidationInfo, field_validator
 from pydantic_core import PydanticCustomError
+
+from zrno.translators.text import Fault, InputError
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
@@ -15,6 +18,31 @@ class Section(BaseModel):
     """A part of the scene: unknown keys are faults."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+Kind = TypeVar("Kind", bound=Section)
+
+
+def section_of_options(section: type[Kind], name: str, options: Mapping[str, Any]) -> Kind:
+    """The section that the keys `NAME.*` of `--set` make. Raises InputError."""
+    data: dict[str, Any] = {}
+    for key, value in options.items():
+        *above, last = key.split(".")[1:]
+        place = data
+        for step in above:
+            place = place.setdefault(step, {})
+        place[last] = value
+    try:
+        return section.model_validate(data)
+    except ValidationError as error:
+        faults = []
+        for detail in error.errors():
+            at = ".".join([name, *(str(step) for step in detail["loc"])])
+            known = detail["type"] != "extra_forbidden"
+            message = f"{at} has a wrong value" if known else f"unknown key {at}"
+            expected = detail["msg"].removeprefix("Input should be ") if known else ", ".join(section.model_fields)
+            faults.append(Fault("--set", 1, 1, message, str(detail["input"]) if known else at, expected))
+        raise InputError(faults) from error
 
 
 def wrong(message: str, expected: str) -> PydanticCustomError:

@@ -25,8 +25,8 @@ Precision = Literal["single", "double"]
 Array = NDArray[Any]
 
 _ROWS = 1 << 17  # rows converted and written at a time, by two threads: neither numpy nor the file holds the GIL
-_XML_TYPES = {"f4": "Float32", "f8": "Float64", "i4": "Int32", "i8": "Int64"}
-_LEGACY_TYPES = {"f4": "float", "f8": "double", "i4": "int", "i8": "vtktypeint64"}
+XML_TYPES = {"u1": "UInt8", "f4": "Float32", "f8": "Float64", "i4": "Int32", "i8": "Int64"}
+LEGACY_TYPES = {"u1": "unsigned_char", "f4": "float", "f8": "double", "i4": "int", "i8": "vtktypeint64"}
 
 
 def write_points(
@@ -50,12 +50,13 @@ def write_points(
         if values.ndim not in (1, 2) or len(values) != len(points):
             raise ValueError(f"{name} has the shape {values.shape}, expected ({len(points)},) or ({len(points)}, k)")
     real = "f4" if precision == "single" else "f8"
-    types = {name: real if values.dtype.kind == "f" else _integer_type(values) for name, values in arrays.items()}
+    types = {name: real if values.dtype.kind == "f" else integer_type(values) for name, values in arrays.items()}
     with replacing(path) as temporary:
         _WRITERS[format](temporary, points, arrays, {"": real, **types}, float(time))
 
 
-def _integer_type(values: Array) -> str:
+def integer_type(values: Array) -> str:
+    """What whole numbers take in a file: i4 where they fit, else i8."""
     limits = np.iinfo(np.int32)
     small = not len(values) or (limits.min <= int(values.min()) and int(values.max()) <= limits.max)
     return "i4" if small else "i8"
@@ -65,7 +66,7 @@ def _components(values: Array) -> int:
     return values.shape[1] if values.ndim == 2 else 1
 
 
-def _write(path: Path, pieces: Sequence[bytes | tuple[Array, str]]) -> None:
+def write_pieces(path: Path, pieces: Sequence[bytes | tuple[Array, str]]) -> None:
     """Write texts and arrays (each with the type it takes in the file) one after the other."""
     tasks: list[tuple[Array | bytes, str, int]] = []
     offset = 0
@@ -110,7 +111,7 @@ def _write_vtp(path: Path, points: Array, arrays: Mapping[str, Array], types: Ma
         nonlocal offset
         size = values.size * np.dtype(dtype).itemsize
         text = (
-            f'<DataArray type="{_XML_TYPES[dtype]}" Name={quoteattr(name)} '
+            f'<DataArray type="{XML_TYPES[dtype]}" Name={quoteattr(name)} '
             f'NumberOfComponents="{_components(values)}" format="appended" offset="{offset}"/>\n'
         )
         data.extend((np.array(size, "<u8").tobytes(), (values, f"<{dtype}")))
@@ -129,7 +130,7 @@ def _write_vtp(path: Path, points: Array, arrays: Mapping[str, Array], types: Ma
         f"<PointData>\n{''.join(declared(name, values, types[name]) for name, values in arrays.items())}</PointData>\n"
         '</Piece>\n</PolyData>\n<AppendedData encoding="raw">\n_'
     )
-    _write(path, [header.encode(), *data, b"\n</AppendedData>\n</VTKFile>\n"])
+    write_pieces(path, [header.encode(), *data, b"\n</AppendedData>\n</VTKFile>\n"])
 
 
 def _write_legacy(
@@ -141,16 +142,16 @@ def _write_legacy(
     pieces: list[bytes | tuple[Array, str]] = [
         b"# vtk DataFile Version 3.0\nzrno\nBINARY\nDATASET POLYDATA\nFIELD FieldData 1\nTimeValue 1 1 double\n",
         (np.array([time]), ">f8"),
-        f"\nPOINTS {count} {_LEGACY_TYPES[types['']]}\n".encode(),
+        f"\nPOINTS {count} {LEGACY_TYPES[types['']]}\n".encode(),
         (points, f">{types['']}"),
         f"\nVERTICES 1 {count + 1}\n".encode(),
         (cell, ">i4"),
         f"\nPOINT_DATA {count}\nFIELD FieldData {len(arrays)}".encode(),
     ]
     for name, values in arrays.items():
-        said = f"\n{name.replace(' ', '_')} {_components(values)} {count} {_LEGACY_TYPES[types[name]]}\n"
+        said = f"\n{name.replace(' ', '_')} {_components(values)} {count} {LEGACY_TYPES[types[name]]}\n"
         pieces += [said.encode(), (values, f">{types[name]}")]
-    _write(path, [*pieces, b"\n"])
+    write_pieces(path, [*pieces, b"\n"])
 
 
 def _write_hdf(path: Path, points: Array, arrays: Mapping[str, Array], types: Mapping[str, str], time: float) -> None:

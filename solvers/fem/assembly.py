@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from . import linear, structure
 from .group import Sink
 from .kinds import make_groups
+from .points import elastic_modulus
 from .problem import Problem
 from .shape import Shape
 
@@ -45,6 +46,7 @@ class Assembly:
         self.structure = structure.build(self.free, [g.elements.nodes for g in self.groups], symmetric=symmetric)
         for group in self.groups:
             group.bind(self.structure)
+        self.stiffness = sum(elastic_modulus(g.elements.law)[0] * float(g.volume.sum()) for g in self.groups)
         self.where = np.flatnonzero(self.free.ravel())
         self.transform = self._relations() if problem.relations else None
         self.system = self._system(self.structure.starts, self.structure.columns)

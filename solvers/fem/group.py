@@ -61,6 +61,7 @@ class Group(Protocol):
 
     elements: Elements
     dofs: NDArray[np.int64]
+    volume: Floats
 
     def bind(self, structure: Structure) -> None:
         """To a matrix structure."""

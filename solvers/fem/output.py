@@ -89,9 +89,12 @@ def history(solver: Solver, energies: dict[str, float]) -> dict[str, float]:
     return row
 
 
-def energy_report(energies: dict[str, float]) -> dict[str, float]:
-    """Energies at the start (none) and now, and how far their balance is out."""
+LEAST = 1e-6  # strain: the elastic energy of less is round-off
+
+
+def energy_report(solver: Solver, energies: dict[str, float]) -> dict[str, float]:
+    """Energies at the start (none) and now; how far their balance is out, over the largest of them."""
     made = energies["kinetic"] + energies["internal"] - energies["external_work"]
-    largest = max(abs(v) for v in energies.values()) or 1.0
+    largest = max(*(abs(v) for v in energies.values()), 0.5 * LEAST**2 * solver.assembly.stiffness) or 1.0
     return {"initial": 0.0, "final": energies["kinetic"] + energies["internal"], **energies,
             "balance_error": abs(made) / largest}  # fmt: skip

@@ -5,11 +5,22 @@ Rows are points; components xx yy zz xy yz zx, shear strains tensor components. 
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ..jit import kernel
+from ..materials import state_rows
 from ..materials.law import stress_update
 from ..materials.tangent import stress_and_tangent
+
+def elastic_modulus(law: Any) -> tuple[float, float]:
+    """Moduli of the virgin material against uniaxial strain and against shear."""
+    rows = max(1, state_rows(law))
+    modulus = np.zeros((1, 6, 6))
+    stress_and_tangent(law, *[0.0] * 12, 1.0, 0.0, 1.0, np.zeros((rows, 1)), 0, np.zeros((rows, 2)), modulus, 0)
+    return float(modulus[0, 0, 0]), float(modulus[0, 3, 3])
+
 
 ROUNDS = 30  # of the search for the strain through the thickness
 SMALL = 1e-12  # of the stiffness times the largest strain

@@ -192,7 +192,14 @@ class Problem:
     velocity: Floats | None = None
     solver: str = "auto"
 
+    def ends(self) -> Floats:
+        """(steps + 1,) when each step ends, the start first."""
+        found = [0.0]
+        for count, length in self.steps:
+            found += (found[-1] + length * np.arange(1, count + 1)).tolist()
+        return np.array(found)
+
     @property
     def end_time(self) -> float:
-        """When the last period ends."""
-        return float(sum(count * length for count, length in self.steps))
+        """When the last step ends."""
+        return float(self.ends()[-1])

@@ -6,10 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..materials import PLASTIC_STRAIN, state_rows
-from ..materials.tangent import stress_and_tangent
 from . import mitc4
 from .group import CHUNK, Bad, Sink
-from .points import advance_plane_stress
+from .points import advance_plane_stress, elastic_modulus
 from .problem import SMALL, Elements
 from .shape import Shape
 from .shapes import table
@@ -57,7 +56,7 @@ class ShellGroup:
         self._matrix, self._forces = np.empty((some, 6, 6, 4, 4)), np.empty((some, 6, 4))
         self._modulus = np.empty((some * (m // e), 6, 6))
         self._scratch, self._kept = np.empty((rows, 2)), np.empty(rows)
-        self._drill = DRILL * self._shear_modulus() * self.thickness.mean(axis=1)
+        self._drill = DRILL * elastic_modulus(elements.law)[1] * self.thickness.mean(axis=1)
         self._offsets = np.empty(0, np.int32)
         self._still = np.broadcast_to(np.eye(3), (len(x), 3, 3))
         self.point_volume = np.empty(m)
@@ -68,14 +67,6 @@ class ShellGroup:
             bad = int(np.argmin(self.point_volume)) // (m // e)
             raise Bad(int(elements.ids[bad]), "its area is not positive: corners that coincide or cross over")
         self.last = Shape(np.zeros((len(x), 6)))
-
-    def _shear_modulus(self) -> float:
-        """Elastic, whatever the section does later."""
-        modulus = np.zeros((1, 6, 6))
-        rows = self.history.shape[0]
-        stress_and_tangent(self.elements.law, *[0.0] * 12, self.elements.density, 0.0, 1.0, np.zeros((rows, 1)), 0,
-                           np.zeros((rows, 2)), modulus, 0)  # fmt: skip
-        return float(modulus[0, 3, 3])
 
     def bind(self, structure: Structure) -> None:
         self._offsets = structure.offsets(self.nodes)

@@ -41,7 +41,7 @@ class Solver:
         self.external_work = 0.0
         self.iterations = 0
         self._patterns: list[tuple[int | None, float, Floats, Floats]] | None = None
-        self._ends = np.cumsum([0.0] + [length for count, length in problem.steps for _ in range(count)])
+        self._ends = problem.ends()
 
     def kernels(self) -> str:
         """What a run is built of, for the log."""
@@ -55,13 +55,11 @@ class Solver:
         return len(self.problem.x)
 
     def advance(self, until: float, max_steps: int, pause: float = math.inf) -> None:
-        """Take up to max_steps of the problem's steps, those that end by `until` (within a step: the one that passes it).
+        """Take one of the problem's steps, and come back: each is to be seen. A step that passes `until` is taken whole.
 
         Raises Diverged with the step, where, and the likely cause; the state is the last one in equilibrium.
         """
-        for _ in range(max_steps):
-            if self.time >= until or self.time >= pause or self.step + 1 >= len(self._ends):
-                return
+        if max_steps > 0 and self.time < until and self.step + 1 < len(self._ends):
             self._take(float(self._ends[self.step + 1]))
 
     def _take(self, end: float) -> None:
@@ -190,7 +188,7 @@ class Solver:
 
     def energy_report(self) -> dict[str, float]:
         """Energies now; balance_error: internal energy (by stresses) against external work (by forces)."""
-        return output.energy_report(self._energies())
+        return output.energy_report(self, self._energies())
 
     # to be continued
 

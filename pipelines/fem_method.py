@@ -1,0 +1,38 @@
+"""The scene's `fem` section: what a finite element run does beyond its deck; `--set fem.KEY=VALUE` for a bare deck."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from zrno.pipelines.sections import Positive, Section, section_of_options
+
+Count = Annotated[int, Field(ge=1)]
+
+
+class Fem(Section):
+    """How a structure is computed, where it is not as the deck says.
+
+    solver: of the linear systems (auto: the best that is installed); enhanced: incompatible modes of hexahedra,
+    quadrilaterals and four-node shells; dilatation: the mean of an element, against locking in plastic flow; geometry:
+    of all groups; iteration: newton or modified; search: line search; tolerance: residual force over the largest
+    force; most: iterations of a step; cuts: how often a step is halved; steps: number of equal steps to the deck's end.
+    """
+
+    solver: Literal["auto", "pardiso", "cholmod", "scipy", "multigrid"] = "auto"
+    enhanced: Literal["deck", "all", "none"] = "deck"
+    dilatation: Literal["auto", "mean", "plain"] = "auto"
+    geometry: Literal["deck", "small", "total", "updated"] = "deck"
+    iteration: Literal["newton", "modified"] = "newton"
+    search: bool | None = None
+    tolerance: Positive | None = None
+    most: Count | None = None
+    cuts: Annotated[int, Field(ge=0, le=30)] = 8
+    steps: Count | None = None
+
+
+def of_options(options: Mapping[str, Any]) -> Fem:
+    """The section that the keys `fem.*` of `--set` make. Raises InputError."""
+    return section_of_options(Fem, "fem", options)
