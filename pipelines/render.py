@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,13 +13,12 @@ from numpy.typing import NDArray
 from zrno.pipelines import egl, movie
 from zrno.pipelines.load import Result, load
 from zrno.pipelines.quantities import field as field_of
-from zrno.pipelines.quantities import quantity
+from zrno.pipelines.quantities import field_names, quantity, unknown
 from zrno.pipelines.replacing import replacing
-from zrno.pipelines.stage import FINE, Stage, scale_for
+from zrno.pipelines.stage import FINE, Cloud, Stage, scale_for
 from zrno.pipelines.view import LEAST_PIXELS, MOST_PIXELS, Extent, axes, extent, is_flat
 from zrno.translators.text import Fault, InputError
 
-SERIES = "particles"
 _RATE = 25  # pictures a second
 
 
@@ -31,18 +31,20 @@ def render(
     view: str = "iso",
     size: tuple[int, int] = (1280, 720),
 ) -> list[Path]:
-    """Draw the particles of a result folder, coloured by a field; returns the files written.
+    """Draw the particles and elements of a result folder, coloured by a field; returns the files written.
 
     output: FILE.png (numbered where time is "all"), FILE.mp4 or FILE.ogv (a film of all frames); without it FIELD.png
-    in the folder. field: an array, a component of one (`velocity_x`), or the magnitude of a vector. time: "last",
+    in the folder. field: an array (of particles, nodes or elements), a component of one (`velocity_x`), or the
+    magnitude of a vector. time: "last",
     "all", or a simulated time, of which the nearest frame is drawn. view: iso (a flat scene is looked at straight), x,
     y, z, -x, -y, -z. size: width and height in pixels. Camera and colours are the same for all frames.
 
     Raises InputError or ValueError for what is not there, Missing where EGL or ffmpeg is not installed.
     """
     result = load(directory)
-    if SERIES not in result.series or not len(result.times):
-        raise InputError([Fault(str(directory), 1, 1, "no frames in this folder", expected=f"{SERIES}.pvd")])
+    if not result.whole or not len(result.times):
+        expected = "particles.pvd or elements.pvd"
+        raise InputError([Fault(str(directory), 1, 1, "no frames in this folder", expected=expected)])
     chosen = _frames(result.times, time)
     target = Path(output) if output is not None else result.directory / _name(field, time, view)
     if target.suffix not in (".png", *movie.SUFFIXES):
@@ -87,33 +89,77 @@ def _frames(times: NDArray[np.float64], time: float | str) -> Sequence[int]:
     return [int(np.argmin(np.abs(times - wanted)))]
 
 
+@dataclass(frozen=True, slots=True)
+class _Shown:
+    """What a frame shows. values: of the field, of all that has it; points, reach: of all, for the camera."""
+
+    cloud: Cloud | None
+    mesh: Any
+    values: NDArray[Any]
+    points: NDArray[Any]
+    reach: float
+
+
+def _shown(result: Result, index: int, field: str) -> _Shown:
+    """A frame with its field: of particles, of nodes or of elements; what does not have it is drawn grey.
+
+    Raises ValueError where nothing has it.
+    """
+    cloud, mesh = None, None
+    values, points, names, reach = [], [], [], 0.0
+    for name in result.whole:
+        data = result.mesh(name, index)
+        points.append(np.asarray(data.points))
+        kinds = (data.point_data, data.cell_data) if name == "elements" else (data.point_data,)
+        found = None
+        for arrays in kinds:
+            of_kind = {key: np.asarray(arrays[key]) for key in arrays}
+            try:
+                found = field_of(of_kind, field)
+            except ValueError:
+                names += field_names(of_kind)
+                continue
+            values.append(found)
+            if name == "elements":
+                arrays["shown"] = np.asarray(found, np.float32)
+            break
+        if name == "elements":
+            mesh = data
+        else:
+            radius = np.asarray(data.point_data["radius"])
+            reach = float(radius.max(initial=0.0))
+            cloud = Cloud(points[-1], radius, np.full(len(radius), np.nan) if found is None else found)
+    if not values:
+        raise ValueError(unknown("field", field, dict.fromkeys(names)))
+    return _Shown(cloud, mesh, np.concatenate(values), np.concatenate(points), reach)
+
+
 def _pictures(
     result: Result, frames: Sequence[int], field: str, view: str, size: tuple[int, int]
 ) -> Iterator[NDArray[np.uint8]]:
     """Each frame's picture; the first pass over the frames finds the camera and the colours that fit all."""
-    first = result.arrays(SERIES, frames[0])["position"]
-    spread = np.ptp(first, axis=0).astype(float)
+    first = _shown(result, frames[0], field)
+    spread = np.ptp(first.points, axis=0).astype(float)
     along = axes(view, spread)
     box = Extent(np.full(3, np.inf), np.full(3, -np.inf))
     least, most, count = np.inf, -np.inf, 0
     for i in frames:
-        arrays = result.arrays(SERIES, i)
-        values = field_of(arrays, field)
-        finite = values[np.isfinite(values)]
+        shown = first if i == frames[0] else _shown(result, i, field)
+        finite = shown.values[np.isfinite(shown.values)]
         if len(finite):
             least, most = min(least, float(finite.min())), max(most, float(finite.max()))
-        seen = extent(arrays["position"], float(arrays["radius"].max()), along)
+        seen = extent(shown.points, shown.reach, along)
         box = Extent(np.minimum(box.low, seen.low), np.maximum(box.high, seen.high))
-        count = max(count, len(values))
-    shown = quantity(field, result.units, result.dimension)
+        count = max(count, len(shown.points))
+    label = quantity(field, result.units, result.dimension)
     when = quantity("time", result.units).unit
-    scale = scale_for(least, most, str(shown))
+    scale = scale_for(least, most, str(label))
     stage = Stage(size, along, box, scale, title=result.title, flat=is_flat(spread), fine=count * len(frames) <= FINE)
     try:
         for i in frames:
-            arrays = result.arrays(SERIES, i)
+            shown = _shown(result, i, field)
             caption = f"t = {result.times[i]:.4g} {when}".rstrip()
-            yield stage.draw(arrays["position"], arrays["radius"], field_of(arrays, field), caption)
+            yield stage.draw(caption, shown.cloud, shown.mesh)
     finally:
         stage.close()
 

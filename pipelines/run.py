@@ -145,10 +145,10 @@ def run(
                 result["warnings"].append(unbalanced)
             known |= result
             manifest.update(**result)
+        speed = f"{result['particle_steps_per_second']:.3g} particle-steps/s, " if result["particles"] else ""
         log.info(
-            "done: %d steps to t = %g in %.2f s (%.3g particle-steps/s, compiling %.1f s), energy balance error %.2e",
-            solver.step, solver.time, seconds, result["particle_steps_per_second"], result["compile_seconds"],
-            result["energy"]["balance_error"],
+            "done: %d steps to t = %g in %.2f s (%scompiling %.1f s), energy balance error %.2e",
+            solver.step, solver.time, seconds, speed, result["compile_seconds"], result["energy"]["balance_error"],
         )  # fmt: skip
         result["pictures"] = _pictures(scene, directory, result["warnings"])
         manifest.update(warnings=result["warnings"], pictures=result["pictures"])

@@ -1,4 +1,4 @@
-"""The picture of a cloud of particles: spheres of true radius, colour bar, title and time; drawn off screen."""
+"""The picture of particles (spheres of true radius) and elements: colour bar, title and time; drawn off screen."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from zrno.pipelines.view import Axes, Extent, aim
+
+_EDGES = 20_000  # elements up to which their edges are drawn
 
 FINE = 2_000_000  # particles drawn in all up to which spheres are drawn twice as fine and averaged: smooth edges
 _INK = "#222222"
@@ -54,6 +56,15 @@ def scale_for(low: float, high: float, label: str) -> Scale:
     return Scale([i * step for i in range(first, last + 1)], "coolwarm" if signed else "viridis", label)
 
 
+@dataclass(frozen=True, slots=True)
+class Cloud:
+    """Particles to draw. points: (n, 3); radius, values: (n,)."""
+
+    points: NDArray[Any]
+    radius: NDArray[Any]
+    values: NDArray[Any]
+
+
 class Stage:
     """Draws frames alike: one camera, one colour scale. size: pixels; flat: without light, for scenes in a plane."""
 
@@ -79,26 +90,29 @@ class Stage:
         self._mapper.SetScaleArray("radius")
         self._mapper.SetScalarModeToUsePointFieldData()
         self._mapper.SelectColorArray("shown")
-        table = pyvista.LookupTable(scale.cmap, n_values=1024)
-        table.scalar_range = scale.limits
-        self._mapper.SetLookupTable(table)
+        self._table = pyvista.LookupTable(scale.cmap, n_values=1024)
+        self._table.scalar_range = scale.limits
+        self._light = (1.0, 0.0) if flat else (0.35, 0.75)
+        self._mapper.SetLookupTable(self._table)
         self._mapper.SetScalarRange(*scale.limits)
-        actor = pyvista.Actor()
-        actor.SetMapper(self._mapper)
-        actor.prop.ambient, actor.prop.diffuse = (1.0, 0.0) if flat else (0.35, 0.75)
-        self._plotter.renderer.AddActor(actor)
+        self._spheres = pyvista.Actor()
+        self._spheres.SetMapper(self._mapper)
+        self._spheres.prop.ambient, self._spheres.prop.diffuse = self._light
+        self._surface: Any = None
         right, bottom = (_MARGIN, _BAR_BELOW) if self._wide else (_BAR_RIGHT, _MARGIN)
         free = (_MARGIN, bottom + _MARGIN, 1 - right - _MARGIN, 1 - _HEAD - _MARGIN)
         aim(self._plotter.camera, axes, box, size, free)
 
-    def draw(self, points: NDArray[Any], radius: NDArray[Any], values: NDArray[Any], caption: str) -> NDArray[np.uint8]:
-        """The picture, shape (height, width, 3). points: (n, 3); radius, values: (n,); caption: the time."""
-        import pyvista
+    def draw(self, caption: str, cloud: Cloud | None = None, mesh: Any = None) -> NDArray[np.uint8]:
+        """The picture, shape (height, width, 3).
 
-        cloud = pyvista.PolyData(np.asarray(points, np.float32))
-        cloud.point_data["radius"] = np.asarray(radius, np.float32)
-        cloud.point_data["shown"] = np.asarray(values, np.float32)
-        self._mapper.SetInputData(cloud)
+        caption: the time; mesh: elements as pyvista has them, coloured by their array "shown" (of points or cells; grey
+        where they have none).
+        """
+        if cloud is not None:
+            self._show_cloud(cloud)
+        if mesh is not None:
+            self._show_mesh(mesh)
         self._plotter.render()
         image = np.asarray(self._plotter.screenshot(return_img=True))
         k = self._finer
@@ -106,6 +120,42 @@ class Stage:
             width, height = self._size
             image = image.reshape(height, k, width, k, 3).mean(axis=(1, 3)).round().astype(np.uint8)
         return self._annotated(image, caption)
+
+    def _show_cloud(self, cloud: Cloud) -> None:
+        import pyvista
+
+        data = pyvista.PolyData(np.asarray(cloud.points, np.float32))
+        data.point_data["radius"] = np.asarray(cloud.radius, np.float32)
+        data.point_data["shown"] = np.asarray(cloud.values, np.float32)
+        self._mapper.SetInputData(data)
+        if self._spheres not in self._plotter.renderer.actors.values():
+            self._plotter.renderer.add_actor(self._spheres)
+
+    def _show_mesh(self, mesh: Any) -> None:
+        if self._surface is not None:
+            self._plotter.remove_actor(self._surface, render=False)
+        coloured = "shown" in mesh.point_data or "shown" in mesh.cell_data
+        surface = mesh.extract_surface(nonlinear_subdivision=1, algorithm="dataset_surface")
+        self._surface = self._plotter.add_mesh(
+            surface,
+            scalars="shown" if coloured else None,
+            cmap=self._scale.cmap,
+            clim=self._scale.limits,
+            n_colors=1024,
+            color=None if coloured else "#b8bcc4",
+            show_scalar_bar=False,
+            show_edges=mesh.n_cells <= _EDGES,
+            edge_color=_INK,
+            edge_opacity=0.35,
+            line_width=1.5 * self._finer,
+            ambient=self._light[0],
+            diffuse=self._light[1],
+            smooth_shading=False,
+            interpolate_before_map=True,
+            render_lines_as_tubes=False,
+            reset_camera=False,
+            copy_mesh=False,
+        )
 
     def close(self) -> None:
         """Free the window."""
