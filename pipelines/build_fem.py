@@ -269,9 +269,9 @@ def _dynamics(control: FemControl) -> fem.Dynamics | None:
     rayleigh = control.rayleigh if control.damping == 3 else (0.0, 0.0)
     return fem.Dynamics(
         method=method,
-        gamma=first if method == "newmark" else 0.5,
-        beta=second if method == "newmark" else 0.25,
-        theta=first if method == "wilson" else 1.4,
+        gamma=first or 0.5 if method == "newmark" else 0.5,
+        beta=second or 0.25 if method == "newmark" else 0.25,
+        theta=first or 1.4 if method == "wilson" else 1.4,
         lumped=control.mass == 2 or method == "central",
         mass_damping=rayleigh[0],
         stiffness_damping=rayleigh[1],

@@ -10,10 +10,15 @@ from . import linear, structure
 from .group import Sink
 from .kinds import make_groups
 from .points import elastic_modulus
-from .problem import Problem
+from .problem import SMALL, Problem
 from .shape import Shape
 
 Floats = NDArray[np.float64]
+def _turns(problem: Problem) -> bool:
+    """Whether nodes have finite rotations."""
+    return any(e.geometry != SMALL and e.family in ("shell", "beam") for e in problem.elements)
+
+
 AXES = ("ux", "uy", "uz", "rx", "ry", "rz")
 
 
@@ -47,6 +52,7 @@ class Assembly:
         for group in self.groups:
             group.bind(self.structure)
         self.stiffness = sum(elastic_modulus(g.elements.law)[0] * float(g.volume.sum()) for g in self.groups)
+        self.still = np.broadcast_to(np.eye(3), (self.n, 3, 3)).copy() if _turns(problem) else None
         self.where = np.flatnonzero(self.free.ravel())
         self.transform = self._relations() if problem.relations else None
         self.system = self._system(self.structure.starts, self.structure.columns)
@@ -156,6 +162,45 @@ class Assembly:
         for group in self.groups:
             group.mass(sink)
         return diagonal, values
+
+    def stiffness_values(self, shape: Shape) -> Floats:
+        """Stiffness at a shape, as values of the structure; the matrix itself stays as it is."""
+        sink = Sink(np.zeros((self.n, 6)), self.structure, np.zeros(len(self.structure.columns)))
+        for group in self.groups:
+            group.evaluate(shape, shape, 0.0, sink)
+        assert sink.values is not None
+        return sink.values
+
+    def diagonal_values(self, diagonal: Floats) -> Floats:
+        """A diagonal matrix (n, 6) as values of the structure."""
+        values = np.zeros(len(self.structure.columns))
+        rows = diagonal.ravel()[self.where]
+        if self.structure.symmetric:  # each row begins with its diagonal
+            values[self.structure.starts[:-1]] = rows
+        else:
+            numbers = np.repeat(np.arange(len(rows)), np.diff(self.structure.starts))
+            values[numbers == self.structure.columns] = rows
+        return values
+
+    def full_matrix(self, what: str, shape: Shape | None = None) -> sp.csr_matrix:
+        """Consistent "mass", or "stiffness" at a shape, of all degrees of freedom (6 n, 6 n), held ones too."""
+        everything = structure.build(self.active, [g.elements.nodes for g in self.groups])
+        values = np.zeros(len(everything.columns))
+        sink = Sink(np.zeros((self.n, 6)), everything, values)
+        for group in self.groups:
+            group.bind(everything)
+            if what == "mass":
+                group.mass(sink)
+            else:
+                assert shape is not None
+                group.evaluate(shape, shape, 0.0, sink)
+            group.bind(self.structure)
+        count = everything.count
+        upper = sp.csr_matrix((values, everything.columns, everything.starts), shape=(count, count))
+        full = (upper + sp.triu(upper, 1).T).tocoo()
+        where = np.flatnonzero(self.active.ravel())
+        size = 6 * self.n
+        return sp.csr_matrix((full.data, (where[full.row], where[full.col])), shape=(size, size))
 
     def commit(self) -> None:
         """Make the last evaluation the state to go on from."""

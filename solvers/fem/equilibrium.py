@@ -53,20 +53,25 @@ class Target:
 
 
 def equilibrium(
-    assembly: Assembly, start: Shape, target: Target, dt: float, how: Iteration, *, definite: bool = True
-) -> tuple[Shape, Floats, Trace]:
-    """The shape in equilibrium, the internal forces (n, 6) and how the iterations went. Raises NotConverged."""
+    assembly: Assembly, start: Shape, target: Target, dt: float, how: Iteration, *, definite: bool = True,
+    keep: bool = False,
+) -> tuple[Shape, Floats, Trace]:  # fmt: skip
+    """The shape in equilibrium, the internal forces (n, 6) and how the iterations went. Raises NotConverged.
+
+    keep: the factors that there are hold, of a linear structure and an equal step.
+    """
     trace = Trace()
     shape = start
     prescribed = target.change
     moved = prescribed if prescribed.any() else None
     first_energy = 0.0
     loads = target.external(shape)
-    internal, of_motion = _evaluate(assembly, shape, start, dt, stiff=True, moved=moved)
+    stiff = not keep or moved is not None
+    internal, of_motion = _evaluate(assembly, shape, start, dt, stiff=stiff, moved=moved)
     residual = _residual(assembly, target, shape, loads, internal, of_motion)
     scale = max(_size(loads), _size(of_motion), _size(internal))
     for iteration in range(how.most):
-        if iteration == 0 or how.method == "newton":
+        if not keep and (iteration == 0 or how.method == "newton"):
             if iteration:
                 internal, _ = _evaluate(assembly, shape, start, dt, stiff=True, moved=None)
             definite = _factor(assembly, target, definite=definite)

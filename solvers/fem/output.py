@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ..frame import Cells, Frame
 from ..materials import Elastic
 from .problem import SMALL, Problem
+from .procedures import Vibrations
 
 if TYPE_CHECKING:
     from .solver import Solver
@@ -46,6 +47,9 @@ def frame(solver: Solver) -> Frame:
     if any(g.dofs.max(initial=0) > 2 for g in a.groups):
         nodes["rotation"] = u[:, 3:]
         nodes["moment"] = solver.reaction[:, 3:]
+    velocity = solver.procedure.velocity(solver)
+    if velocity is not None:
+        nodes["velocity"] = velocity[:, :3]
     nodes["von_mises"] = von_mises(nodes["stress"])
     blocks = []
     for group in a.groups:
@@ -77,13 +81,16 @@ def history(solver: Solver, energies: dict[str, float]) -> dict[str, float]:
     """One row: energies, sums of loads and reactions, the largest displacement."""
     loads, reactions = solver.external_forces[:, :3].sum(axis=0), solver.reaction[:, :3].sum(axis=0)
     row = {"time": solver.time, "dt": solver.dt, **energies}
-    row |= dict.fromkeys(("momentum_x", "momentum_y", "momentum_z"), 0.0)
+    momentum = solver.procedure.momentum(solver)
+    row |= dict(zip(("momentum_x", "momentum_y", "momentum_z"), momentum.tolist(), strict=True))
     row |= dict.fromkeys(("contact_force_x", "contact_force_y", "contact_force_z"), 0.0)
     row["active"] = float(sum(len(g.elements.ids) for g in solver.assembly.groups))
     for k, axis in enumerate("xyz"):
         row[f"load_{axis}"], row[f"reaction_{axis}"] = float(loads[k]), float(reactions[k])
     size = np.linalg.norm(solver.shape.u[:, :3], axis=1)
     row["max_displacement"] = float(size.max(initial=0.0))
+    if isinstance(solver.procedure, Vibrations):
+        row["frequency"] = solver.procedure.frequency
     row["iterations"] = float(solver.iterations)
     row["step"] = float(solver.step)
     return row
@@ -92,9 +99,9 @@ def history(solver: Solver, energies: dict[str, float]) -> dict[str, float]:
 LEAST = 1e-6  # strain: the elastic energy of less is round-off
 
 
-def energy_report(solver: Solver, energies: dict[str, float]) -> dict[str, float]:
-    """Energies at the start (none) and now; how far their balance is out, over the largest of them."""
-    made = energies["kinetic"] + energies["internal"] - energies["external_work"]
-    largest = max(*(abs(v) for v in energies.values()), 0.5 * LEAST**2 * solver.assembly.stiffness) or 1.0
-    return {"initial": 0.0, "final": energies["kinetic"] + energies["internal"], **energies,
+def energy_report(solver: Solver, energies: dict[str, float], start: float) -> dict[str, float]:
+    """Energies at the start and now; how far their balance is out, over the largest of them."""
+    made = energies["kinetic"] + energies["internal"] - energies["external_work"] - start
+    largest = max(start, *(abs(v) for v in energies.values()), 0.5 * LEAST**2 * solver.assembly.stiffness) or 1.0
+    return {"initial": start, "final": energies["kinetic"] + energies["internal"], **energies,
             "balance_error": abs(made) / largest}  # fmt: skip
