@@ -31,10 +31,20 @@ class Mechanism(ArithmeticError):
         self.dof = dof
 
 
-class Assembly:
-    """Groups, equations and the matrix of a problem. symmetric: whether the matrix is."""
+def moment_nodes(problem: Problem) -> NDArray[np.int64]:
+    """Nodes of finite rotation with a moment: one about a fixed axis has no potential, and the matrix no symmetry."""
+    if not _turns(problem):
+        return np.empty(0, np.int64)
+    found = [load.nodes[(load.dofs > 2) & (load.values != 0.0)] for load in problem.nodal_loads]
+    return np.unique(np.concatenate(found)) if found else np.empty(0, np.int64)
 
-    def __init__(self, problem: Problem, *, threads: int = 1, symmetric: bool = True) -> None:
+
+class Assembly:
+    """Groups, equations and the matrix of a problem."""
+
+    def __init__(self, problem: Problem, *, threads: int = 1) -> None:
+        self._moments = moment_nodes(problem)
+        symmetric = not len(self._moments)
         self.problem = problem
         self.threads = threads
         self.n = len(problem.x)
@@ -55,6 +65,7 @@ class Assembly:
         self.still = np.broadcast_to(np.eye(3), (self.n, 3, 3)).copy() if _turns(problem) else None
         self.where = np.flatnonzero(self.free.ravel())
         self.transform = self._relations() if problem.relations else None
+        self._moment_places = self._places_of_moments()
         self.system = self._system(self.structure.starts, self.structure.columns)
 
     def _system(self, starts: NDArray[np.int32], columns: NDArray[np.int32]) -> linear.System:
@@ -93,7 +104,29 @@ class Assembly:
         sink = Sink(np.zeros((self.n, 6)), self.structure, values, moved)
         for group in self.groups:
             group.evaluate(shape, before, dt, sink)
+        if values is not None and len(self._moments):
+            x, y, z = sink.forces[self._moments, 3:].T
+            zero = np.zeros_like(x)
+            turning = 0.5 * np.array([[zero, z, -y], [-z, zero, x], [y, -x, zero]]).transpose(2, 0, 1)
+            kept = self._moment_places >= 0
+            values[self._moment_places[kept]] += turning[kept]
         return sink.forces, sink.of_motion
+
+    def _places_of_moments(self) -> NDArray[np.int64]:
+        """(m, 3, 3) where the rotations' own entries of the nodes with moments stand among the values, -1 nowhere."""
+        s = self.structure
+        places = np.full((len(self._moments), 3, 3), -1)
+        for k, node in enumerate(self._moments.tolist()):
+            for i in range(3):
+                row = int(s.equation[node, 3 + i])
+                if row < 0:
+                    continue
+                own = s.columns[s.starts[row] : s.starts[row + 1]]
+                for j in range(3):
+                    column = int(s.equation[node, 3 + j])
+                    if column >= 0:
+                        places[k, i, j] = s.starts[row] + int(np.searchsorted(own, column))
+        return places
 
     def _values(self) -> Floats:
         if self.transform is None:
