@@ -59,6 +59,7 @@ def structure_problem(model: Model, path: str, method: Fem | None = None) -> fem
         ),
         steps=_steps(control, method),
         iteration=_iteration(control, method),
+        path=_path(model, control, method),
         dynamics=_dynamics(control),
         modes=control.eigen_count if control.eigenvalues else 0,
         displacement=_initial_values(model, "displacement", n),
@@ -241,23 +242,36 @@ def _materials(model: Model, parts: tuple[int, ...] | None) -> tuple[int, ...] |
 def _iteration(control: FemControl, method: Fem) -> fem.Iteration:
     """PAK's METOD and tolerances. Forces are to be in balance to 1e-6 whatever the deck's own tolerances allow."""
     metod = control.iteration
-    energy, force, moment = (t if on else 0.0 for t, on in zip(control.tolerances, control.converge_on, strict=False))
-    arc = None
-    if metod >= 60:
-        names = ("option", "node", "dof", "first", "factor", "length", "largest_displacement", "largest_load")
-        arc = dict(zip(names, control.loading, strict=False))
+    energy, force = (t if on else 0.0 for t, on in zip(control.tolerances[:2], control.converge_on[:2], strict=True))
     return fem.Iteration(
         method=method.iteration,
         search=metod in (4, 63) if method.search is None else method.search,
-        arc=arc,
         most=method.most or max(control.max_iterations, 15),
         energy=energy,
         force=method.tolerance or (min(force, FORCE) if force else FORCE),
-        moment=moment,
         cuts=method.cuts,
     )
 
 
+def _path(model: Model, control: FemControl, method: Fem) -> fem.Path | None:
+    """PAK's automatic loading (METOD 61, 63: arc length; 71, 73: displacement control), or the scene's."""
+    said = method.path
+    if said is not None:
+        return fem.Path(_node(model, said.node), _AXES.index(said.direction), said.first, said.controlled)
+    if control.iteration < 60 or len(control.loading) < 4:
+        return None
+    _, node, dof, first = control.loading[:4]
+    return fem.Path(_node(model, int(node)), int(dof) - 1, float(first), control.iteration in (71, 73))
+
+
+def _node(model: Model, number: int) -> int:
+    found = np.flatnonzero(model.node_ids == number)
+    if not len(found):
+        raise ValueError(f"the path of loading is measured at node {number}, which there is not")
+    return int(found[0])
+
+
+_AXES = ("ux", "uy", "uz", "rx", "ry", "rz")
 FORCE = 1e-6  # unbalanced force over the largest one
 
 

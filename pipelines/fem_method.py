@@ -12,6 +12,16 @@ from zrno.pipelines.sections import Positive, Section, section_of_options
 Count = Annotated[int, Field(ge=1)]
 
 
+class PathOfLoading(Section):
+    """Loads that are found, all growing together: in each step a node moves by `first` (controlled), or the structure
+    by the length of arc that this makes. node: its number in the deck; the sign of `first` is the way to go."""
+
+    node: int
+    direction: Literal["ux", "uy", "uz", "rx", "ry", "rz"]
+    first: float
+    controlled: bool = False
+
+
 class Fem(Section):
     """How a structure is computed, where it is not as the deck says.
 
@@ -31,6 +41,7 @@ class Fem(Section):
     most: Count | None = None
     cuts: Annotated[int, Field(ge=0, le=30)] = 8
     steps: Count | None = None
+    path: PathOfLoading | None = None
 
 
 def of_options(options: Mapping[str, Any]) -> Fem:

@@ -12,6 +12,7 @@ from .problem import (
     Iteration,
     Motion,
     NodalLoad,
+    Path,
     Problem,
     Relation,
 )
@@ -29,6 +30,7 @@ __all__ = [
     "Iteration",
     "Motion",
     "NodalLoad",
+    "Path",
     "Problem",
     "Relation",
     "Solver",

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..frame import Cells, Frame
 from ..materials import Elastic
+from .arc import PathFollowing
 from .problem import SMALL, Problem
 from .procedures import Vibrations
 
@@ -89,6 +90,8 @@ def history(solver: Solver, energies: dict[str, float]) -> dict[str, float]:
         row[f"load_{axis}"], row[f"reaction_{axis}"] = float(loads[k]), float(reactions[k])
     size = np.linalg.norm(solver.shape.u[:, :3], axis=1)
     row["max_displacement"] = float(size.max(initial=0.0))
+    if isinstance(solver.procedure, PathFollowing):
+        row["load_factor"] = solver.procedure.factor
     if isinstance(solver.procedure, Vibrations):
         row["frequency"] = solver.procedure.frequency
     row["iterations"] = float(solver.iterations)

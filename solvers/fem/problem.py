@@ -129,21 +129,30 @@ class Relation:
 
 
 @dataclass(frozen=True, slots=True)
+class Path:
+    """Loads that are found. node, dof: whose first increment is `first` (its sign is the way to go); controlled: each
+    step is as long there, else the length of arc that this makes."""
+
+    node: int
+    dof: int
+    first: float
+    controlled: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class Iteration:
     """How equilibrium is found.
 
-    method: "newton" (full), "modified" (stiffness of the step's start), "bfgs"; search: line search; arc: arc length
-    (loads are found, not given); most: iterations; energy, force, moment: relative tolerances, 0 not asked; cuts: how
-    often a step is halved that does not converge.
+    method: "newton" (full) or "modified" (stiffness of the step's start); search: line search; most: iterations;
+    energy, force, displacement: relative tolerances, 0 not asked; cuts: how often a step is halved that does not
+    converge.
     """
 
     method: str = "newton"
     search: bool = False
-    arc: dict[str, float] | None = None
     most: int = 20
     energy: float = 0.0
     force: float = 1e-6
-    moment: float = 0.0
     displacement: float = 0.0
     cuts: int = 8
 
@@ -186,6 +195,7 @@ class Problem:
     relations: tuple[Relation, ...] = ()
     steps: tuple[tuple[int, float], ...] = ((1, 1.0),)
     iteration: Iteration = field(default_factory=Iteration)
+    path: Path | None = None
     dynamics: Dynamics | None = None
     modes: int = 0
     displacement: Floats | None = None

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..errors import Diverged
 from ..frame import Frame
 from . import output
+from .arc import PathFollowing
 from .assembly import AXES, Assembly, Mechanism
 from .equilibrium import NotConverged
 from .loads import Loads
@@ -66,6 +67,8 @@ class Solver:
         p = self.problem
         if p.modes:
             return Vibrations()
+        if p.path is not None:
+            return PathFollowing(self, p.path)
         if p.dynamics is not None and p.dynamics.method == "central":
             return Explicit(self)
         return Superposition() if self.linear and p.dynamics is None else Increments(self)
