@@ -93,7 +93,7 @@ def test_a_pair_is_said_not_to_run_yet(scene: Path) -> None:
     (scene.parent / "plate.dat").write_text("C a deck\n")
     scene.write_text(SCENE.replace("[plate.mcm]", "[plate.dat, plate.mcm]"))
     rows = check([scene])
-    assert "cannot be run yet: finite elements are not run yet" in rows[0]["warnings"][0]
+    assert "cannot be run yet: one run takes one deck" in rows[0]["warnings"][0]
 
 
 def test_samples_are_sound_without_a_warning(tmp_path: Path) -> None:
