@@ -16,7 +16,7 @@ from zrno.translators.model import ElementBlock, FaceLoad, Model, NodalLoad, Sec
 from zrno.translators.text import Fault, InputError
 
 _GEOMETRY = {0: fem.SMALL, 1: fem.SMALL, 2: fem.TOTAL, 3: fem.UPDATED, 4: fem.UPDATED, 5: fem.UPDATED}
-_MODES = {"hex8": 9, "quad4": 4}  # enhanced strains where a deck asks for incompatible modes
+_MODES = {"hex8": 12, "quad4": 4}  # enhanced strains where a deck asks for incompatible modes
 _FACES = {3: "tri3", 4: "quad4", 6: "tri6", 8: "quad8", 9: "quad9"}
 _COMPUTED = ("solid", "plane", "truss", "beam", "shell", "spring", "mass")
 
@@ -139,7 +139,7 @@ def _group(model: Model, block: ElementBlock, rows: Any, part: int, method: Fem)
         density=material.density,
         geometry=_GEOMETRY[_iatyp(section)] if method.geometry == "deck" else method.geometry,
         gauss=(gauss if solid else gauss[:2]) if block.kind.startswith(("hex", "quad")) else (),
-        modes=_MODES.get(block.kind, 0) if enhanced else 0,
+        modes=_modes(block.kind, int(native.get("IALFA", 0))) if enhanced else 0,
         mean=mean and not enhanced and block.kind in ("hex8", "quad4") and family != "shell",
         plane=section.plane if family == "plane" else "",
         thickness=thickness,
@@ -150,6 +150,11 @@ def _group(model: Model, block: ElementBlock, rows: Any, part: int, method: Fem)
         birth=data.get("birth"),
         death=data.get("death"),
     )
+
+
+def _modes(kind: str, asked: int) -> int:
+    """Enhanced strains for PAK's incompatible modes: nine are its nine; its 12, 18 and 30 are our twelve."""
+    return 9 if kind == "hex8" and asked == 1 else _MODES.get(kind, 0)
 
 
 def _fixed(model: Model, control: FemControl) -> Any:
@@ -191,11 +196,8 @@ def _face_loads(model: Model, load: FaceLoad, numbers: list[int], *, follows: bo
         kind = {2: "line2", 3: "line3"}[size] if flat else _FACES[size]
         order = [0, 1, 2, 4, 5, 6] if kind == "tri6" else list(range(size))
         nodes = load.faces[rows][:, order]
-        values = load.values[rows]
-        if values.shape[1] == 1:
-            values = np.repeat(values, size, axis=1)
-        else:
-            values = _to_nodes(values, kind)
+        given = load.values[rows]
+        values = np.repeat(given, size, axis=1) if given.shape[1] == 1 else _to_nodes(given, kind)
         thickness = np.full(len(nodes), load.native.get("THICV") or 1.0) if flat else None
         plane = next((s.plane for s in model.sections.values() if s.plane), "") if flat else ""
         if flat:
@@ -217,21 +219,24 @@ def _to_nodes(corners: Any, kind: str) -> Any:
 
 def _outward(model: Model, edges: Any, values: Any) -> tuple[Any, Any]:
     """Edges of plane elements turned so that pressure, which acts to the left of their way, goes into the element."""
-    centres: dict[tuple[int, int], Any] = {}
-    wanted = {tuple(sorted(map(int, edge[:2]))) for edge in edges}
+    n = len(model.xyz)
+    keys, centres = [], []
     for block in model.blocks:
-        for a, b in TABLE[block.kind].shape.edges or ((0, 1),):
-            pairs = np.sort(block.nodes[:, [a, b]], axis=1)
-            for i in np.flatnonzero([tuple(p) in wanted for p in pairs.tolist()]).tolist():
-                centres[tuple(pairs[i].tolist())] = model.xyz[block.nodes[i]].mean(axis=0)
+        middle = model.xyz[block.nodes].mean(axis=1)
+        for a, b in TABLE[block.kind].shape.edges:
+            pair = np.sort(block.nodes[:, [a, b]], axis=1)
+            keys.append(pair[:, 0] * n + pair[:, 1])
+            centres.append(middle)
+    key, centre = np.concatenate(keys), np.concatenate(centres)
+    order = np.argsort(key)
+    pair = np.sort(edges[:, :2], axis=1)
+    wanted = pair[:, 0] * n + pair[:, 1]
+    place = order[np.minimum(np.searchsorted(key[order], wanted), len(order) - 1)]
+    start = model.xyz[edges[:, 0]]
+    way, inward = model.xyz[edges[:, 1]] - start, centre[place] - start
+    turned = (key[place] == wanted) & (way[:, 0] * inward[:, 1] < way[:, 1] * inward[:, 0])
     edges, values = edges.copy(), values.copy()
-    for k, edge in enumerate(edges):
-        centre = centres.get(tuple(sorted(map(int, edge[:2]))))
-        if centre is None:
-            continue
-        way, inward = model.xyz[edge[1]] - model.xyz[edge[0]], centre - model.xyz[edge[0]]
-        if way[0] * inward[1] - way[1] * inward[0] < 0.0:
-            edges[k, :2], values[k, :2] = edge[1::-1], values[k, 1::-1]
+    edges[turned, :2], values[turned, :2] = edges[turned, 1::-1], values[turned, 1::-1]
     return edges, values
 
 

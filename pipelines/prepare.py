@@ -13,15 +13,15 @@ from zrno.pipelines import options as command_options
 from zrno.pipelines import scene as scenes
 from zrno.pipelines.checkpoint import load_latest
 from zrno.pipelines.drafts import Draft, drafts
-from zrno.pipelines.manifest import digests
 from zrno.pipelines.fem_method import of_options as fem_of_options
+from zrno.pipelines.manifest import digests
 from zrno.pipelines.method import of_options
 from zrno.pipelines.quantities import shown_names
 from zrno.pipelines.scene import Scene
 from zrno.translators import read
 from zrno.translators.model import Model
 from zrno.translators.text import Fault, InputError
-from zrno.translators.yaml_marks import did_you_mean
+from zrno.translators.yaml_marks import Place, did_you_mean
 
 if TYPE_CHECKING:
     from zrno.solvers import fem, sph

@@ -199,7 +199,9 @@ def _step_observers(
             resume=resume,
             wanted=None if every else _plotted(fem),
         ),
-        History(directory, interval=None, units=scene.system.labels(3) if scene and scene.system else {}, resume=resume),
+        History(
+            directory, interval=None, units=scene.system.labels(3) if scene and scene.system else {}, resume=resume
+        ),
         Checkpointer(directory, interval=saves, every=max(1, steps // SAVES), inputs=decks),
     )
 

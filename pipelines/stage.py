@@ -139,9 +139,8 @@ class Stage:
         self._surface = self._plotter.add_mesh(
             surface,
             scalars="shown" if coloured else None,
-            cmap=self._scale.cmap,
+            cmap=self._table,
             clim=self._scale.limits,
-            n_colors=1024,
             color=None if coloured else "#b8bcc4",
             show_scalar_bar=False,
             show_edges=mesh.n_cells <= _EDGES,

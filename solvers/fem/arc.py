@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from .assembly import Mechanism
 from .equilibrium import NotConverged
-from .group import Bad
+from .groups.group import Bad
 from .problem import Path
 from .shape import Shape
 

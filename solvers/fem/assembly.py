@@ -7,13 +7,15 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from . import linear, structure
-from .group import Sink
-from .kinds import make_groups
-from .points import elastic_modulus
+from .elements.points import elastic_modulus
+from .groups import make_groups
+from .groups.group import Sink
 from .problem import SMALL, Problem
 from .shape import Shape
 
 Floats = NDArray[np.float64]
+
+
 def _turns(problem: Problem) -> bool:
     """Whether nodes have finite rotations."""
     return any(e.geometry != SMALL and e.family in ("shell", "beam") for e in problem.elements)

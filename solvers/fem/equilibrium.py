@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .assembly import Assembly, Mechanism
-from .group import Bad
+from .groups.group import Bad
 from .problem import Iteration
 from .shape import Shape
 
@@ -85,7 +85,9 @@ def equilibrium(
         internal, _ = _evaluate(assembly, trial, start, dt, stiff=False, moved=None)
         left = _residual(assembly, target, trial, loads, internal, None)
         if how.search and iteration:
-            trial, loads, internal, left = _searched(assembly, target, shape, start, step, dt, left, along, (trial, loads, internal))
+            trial, loads, internal, left = _searched(
+                assembly, target, shape, start, step, dt, left, along, (trial, loads, internal)
+            )
         scale = max(scale, _size(loads), _size(internal))
         energy = abs(float(residual @ assembly.gather(step)))
         if iteration == 0:
@@ -99,7 +101,8 @@ def equilibrium(
             return shape, internal, trace
     worst = divmod(int(assembly.where[int(np.argmax(np.abs(residual)))]), 6) if assembly.transform is None else None
     raise NotConverged(
-        f"no equilibrium after {how.most} iterations: the residual force is {trace.residuals[-1]:.1e} of the loads", worst
+        f"no equilibrium after {how.most} iterations: the residual force is {trace.residuals[-1]:.1e} of the loads",
+        worst,
     )
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ctypes
 import importlib.util
+import logging
 import sys
 from collections.abc import Callable
 from typing import Any, Protocol
@@ -18,7 +19,9 @@ import scipy.sparse.linalg as spl
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
-RESIDUAL = 1e-6  # relative, after refinement: above it the system is singular to working precision
+log = logging.getLogger("zrno")
+RESIDUAL = 1e-3  # relative to the load, after refinement: above it the system is singular to working precision
+POOR = 1e-6  # above it the log says so: the softest motions are only so exact
 REFINED = 1e-11  # residuals above it are refined
 REFINEMENTS = 3
 
@@ -44,7 +47,11 @@ class Factors(Protocol):
 
 
 class System:
-    """A matrix of fixed structure. kind: "definite", "symmetric" (indefinite) or "general"; method: a key of METHODS."""
+    """A matrix of fixed structure.
+
+    kind: "definite", "symmetric" (indefinite) or "general"; method: "auto" or a key of METHODS; near_null: motions that
+    the matrix hardly resists, for multigrid.
+    """
 
     def __init__(
         self, starts: NDArray[np.int32], columns: NDArray[np.int32], *, kind: str = "definite", method: str = "auto",
@@ -112,6 +119,8 @@ class System:
         size = float(np.abs(right - self.product(x)).max()) / scale
         if not size < RESIDUAL:
             raise Singular(-1, f"the residual of the solution is {size:.1e} of the load")
+        if size > POOR:
+            log.warning("the linear system is ill-conditioned: the solution leaves %.1e of the load", size)
         return x
 
 
@@ -266,7 +275,10 @@ class _SuperLU:
 
 
 class _Multigrid:
-    """Conjugate gradients, preconditioned by smoothed aggregation with the rigid motions (Vanek, Mandel & Brezina 1996)."""
+    """Conjugate gradients, preconditioned by smoothed aggregation with the rigid motions.
+
+    Vanek, Mandel & Brezina 1996.
+    """
 
     name = "multigrid"
     tolerance = 1e-10

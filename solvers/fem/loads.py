@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from . import shapes
-from .group import Group
+from .elements import shapes
+from .groups.group import Group
 from .problem import FaceLoad, Problem
 
 Floats = NDArray[np.float64]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..frame import Cells, Frame
+from ..frame import Arrays, Cells, Frame
 from ..materials import Elastic
 from .arc import PathFollowing
 from .problem import SMALL, Problem
@@ -21,9 +21,11 @@ Floats = NDArray[np.float64]
 
 def is_linear(problem: Problem) -> bool:
     """Whether one factorisation answers all steps: linear laws, small displacements, loads that do not follow."""
-    return all(isinstance(e.law, Elastic) and e.geometry == SMALL for e in problem.elements) and not any(
-        load.follows for load in problem.face_loads
-    ) and not any(m.incremental for m in problem.motions)
+    return (
+        all(isinstance(e.law, Elastic) and e.geometry == SMALL for e in problem.elements)
+        and not any(load.follows for load in problem.face_loads)
+        and not any(m.incremental for m in problem.motions)
+    )
 
 
 def von_mises(stress: Floats) -> Floats:
@@ -38,7 +40,7 @@ def frame(solver: Solver) -> Frame:
     """Nodes and elements of a solver, in the order of the deck."""
     p, a = solver.problem, solver.assembly
     u = solver.shape.u
-    nodes = {
+    nodes: Arrays = {
         "position": p.x + u[:, :3],
         "id": p.node_ids,
         "displacement": u[:, :3],
@@ -55,7 +57,7 @@ def frame(solver: Solver) -> Frame:
     blocks = []
     for group in a.groups:
         e = group.elements
-        data = group.output()
+        data: Arrays = dict(group.output())
         count = len(e.ids)
         data |= {"id": e.ids, "material": np.full(count, e.material), "von_mises": von_mises(data["stress"])}
         thickness = np.zeros(count) if e.thickness is None else np.asarray(e.thickness, dtype=float)

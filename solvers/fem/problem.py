@@ -94,8 +94,8 @@ class Motion:
 class FaceLoad:
     """Pressure (direction 0, against the right-hand normal) or traction along an axis (1, 2, 3) on faces.
 
-    kind: of the faces' shape; nodes: (f, n); values: (f, n) at the nodes; follows: whether pressure turns with the face;
-    thickness: (f,) of edges of plane elements; plane: theirs.
+    kind: of the faces' shape; nodes: (f, n); values: (f, n) at the nodes; follows: whether pressure turns with the
+    face; thickness: (f,) of edges of plane elements; plane: theirs.
     """
 
     kind: str
@@ -119,7 +119,10 @@ class BodyLoad:
 
 @dataclass(frozen=True, slots=True)
 class Relation:
-    """A linear relation: dependent degree of freedom = sum of coefficients x others. nodes, dofs, coefficients: (k,)."""
+    """A linear relation: a dependent degree of freedom is the sum of coefficients times others.
+
+    nodes, dofs, coefficients: (k,).
+    """
 
     node: int
     dof: int

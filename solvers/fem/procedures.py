@@ -16,7 +16,7 @@ from .assembly import Mechanism
 from .eigen import vibrations
 from .equilibrium import NotConverged, Target, equilibrium
 from .explicit import Stepper
-from .group import Bad
+from .groups.group import Bad
 from .implicit import Integrator
 from .shape import Shape
 

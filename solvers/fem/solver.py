@@ -84,7 +84,7 @@ class Solver:
         return len(self.problem.x)
 
     def advance(self, until: float, max_steps: int, pause: float = math.inf) -> None:
-        """Take one of the problem's steps, and come back: each is to be seen. A step that passes `until` is taken whole.
+        """Take one of the problem's steps and come back, for each is to be seen; what passes `until` is taken whole.
 
         Raises Diverged with the step, where, and the likely cause; the state is the last one in equilibrium.
         """
@@ -179,7 +179,7 @@ class Solver:
 
     def restore(self, data: dict[str, Any]) -> None:
         """Go on from a checkpoint of the same problem. ValueError when it is of another one."""
-        if np.shape(data.get("u")) != (self.n, 6):
+        if "u" not in data or np.shape(data["u"]) != (self.n, 6):
             raise ValueError("the checkpoint does not fit this run: the displacements have another shape")
         self.shape = Shape(np.array(data["u"]), np.array(data["turn"]) if "turn" in data else None)
         for name in _KEPT:

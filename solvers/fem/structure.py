@@ -1,8 +1,8 @@
 """The sparse matrix's structure, found once and filled at each iteration.
 
-Rows and columns are the free degrees of freedom, numbered node by node. Of a symmetric matrix only the upper triangle is
-kept, row by row (CSR), each row beginning with its diagonal. Everything is by nodes: a pair of an element's nodes has one
-number, where the second node's columns begin in the first one's rows, counted from the first one's first equation.
+Rows and columns are the free degrees of freedom, numbered node by node. Of a symmetric matrix only the upper triangle
+is kept, row by row (CSR), each row beginning with its diagonal. Everything is by nodes: a pair of an element's nodes
+has one number, where the second node's columns begin in the first one's rows, from the first one's first equation.
 """
 
 from __future__ import annotations

@@ -7,9 +7,9 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from .problem import Elements
-from .shape import Shape
-from .structure import Structure, product_of_elements, scatter, scatter_forces
+from ..problem import Elements
+from ..shape import Shape
+from ..structure import Structure, product_of_elements, scatter, scatter_forces
 
 Floats = NDArray[np.float64]
 CHUNK = 256  # elements at a time

@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from ..jit import kernel
-from ..materials import state_rows
-from ..materials.law import stress_update
-from ..materials.tangent import stress_and_tangent
+from ...jit import kernel
+from ...materials import state_rows
+from ...materials.law import stress_update
+from ...materials.tangent import stress_and_tangent
+
 
 def elastic_modulus(law: Any) -> tuple[float, float]:
     """Moduli of the virgin material against uniaxial strain and against shear."""

@@ -1,12 +1,12 @@
-"""Which class computes a group of elements."""
+"""Groups of elements with their state, and which class computes which."""
 
 from __future__ import annotations
 
+from ..elements.directors import directors
+from ..problem import Problem
 from .bars import BarGroup
-from .continuum_group import ContinuumGroup
-from .directors import directors
+from .continuum import ContinuumGroup
 from .group import Group
-from .problem import Problem
 from .shells import ShellGroup
 
 

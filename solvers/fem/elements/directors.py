@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ..jit import kernel
+from ...jit import kernel
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -43,14 +43,13 @@ def _corner_normals(x: Floats, corners: Ints) -> Floats:
 
 
 def _unit(vectors: Floats) -> Floats:
-    return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-300)
+    out: Floats = vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-300)
+    return out
 
 
 def _into_planes(vectors: Floats, nodes: Ints, fixed: NDArray[np.bool_]) -> None:
     """Drop what stands out of symmetry planes; a node that is held in all of them is clamped and keeps its director."""
-    planes = np.column_stack(
-        [fixed[:, k] & fixed[:, 3 + (k + 1) % 3] & fixed[:, 3 + (k + 2) % 3] for k in range(3)]
-    )
+    planes = np.column_stack([fixed[:, k] & fixed[:, 3 + (k + 1) % 3] & fixed[:, 3 + (k + 2) % 3] for k in range(3)])
     planes[planes.all(axis=1)] = False
     mask = planes[nodes]
     inside = np.where(mask, 0.0, vectors)

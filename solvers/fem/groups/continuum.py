@@ -7,13 +7,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..materials import PLASTIC_STRAIN, state_rows
-from . import continuum, shapes
+from ...materials import PLASTIC_STRAIN, state_rows
+from ..elements import continuum, shapes
+from ..elements import continuum_loops as loops
+from ..elements.points import advance, advance_plane_stress
+from ..problem import SMALL, UPDATED, Elements
+from ..shape import Shape
+from ..structure import Structure
 from .group import CHUNK, Bad, Sink
-from .points import advance, advance_plane_stress
-from .problem import SMALL, UPDATED, Elements
-from .shape import Shape
-from .structure import Structure
 
 Floats = NDArray[np.float64]
 _PLANES = {"": continuum.SOLID, "strain": continuum.FLAT, "stress": continuum.FLAT, "axisymmetric": continuum.ROUND}
@@ -100,7 +101,7 @@ class ContinuumGroup:
         smallest = np.empty(hi - lo)
         alpha = (self._alpha[lo:hi], self.alpha[lo:hi]) if self.modes is not None else (None, None)
         strain = self._strain_step[rows]
-        continuum.strains(
+        loops.strains(
             nodes, middle, u, before, self._values, self._slopes, t.weights, t.points, self._centre, self.plane,
             self._finite, mean, self.modes, *alpha, strain, smallest,
         )  # fmt: skip
@@ -118,7 +119,7 @@ class ContinuumGroup:
                     self._scratch, modulus if sink.stiff else None)  # fmt: skip
         forces, matrix = self._forces[: hi - lo], self._matrix[: hi - lo] if sink.stiff else None
         answer, rest = (self._answer[lo:hi], self._rest[lo:hi]) if self.modes is not None else (None, None)
-        continuum.integrate(
+        loops.integrate(
             nodes, places, u, self._values, self._slopes, t.weights, t.points, self._centre, self.plane,
             self.thickness[lo:hi], self._finite, None if self.small else True, mean, self.modes, self.trial[rows],
             modulus, matrix, forces, answer, rest,
@@ -127,7 +128,7 @@ class ContinuumGroup:
 
     def _turn(self, nodes: Any, middle: Floats, u: Floats, before: Floats, rows: slice) -> None:
         """Turn the committed stress with the material, into `trial` (Hughes & Winget 1980)."""
-        continuum.turned(nodes, middle, u, before, self._slopes, self.plane, self.stress[rows], self.trial[rows])
+        loops.turned(nodes, middle, u, before, self._slopes, self.plane, self.stress[rows], self.trial[rows])
 
     def commit(self) -> None:
         doubled = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
@@ -143,7 +144,7 @@ class ContinuumGroup:
 
     def _volumes(self) -> None:
         t = self.table
-        continuum.volumes(self.nodes, self.x, self._values, self._slopes, t.weights, self.plane, self.thickness,
+        loops.volumes(self.nodes, self.x, self._values, self._slopes, t.weights, self.plane, self.thickness,
                           self.point_volume)  # fmt: skip
         self.volume[:] = self.point_volume.reshape(len(self.nodes), -1).sum(axis=1)
         if not (self.volume > 0.0).all():
@@ -154,15 +155,15 @@ class ContinuumGroup:
         full = shapes.table(self.elements.kind, full=True)
         e, k = self.nodes.shape
         lumped, matrix = np.empty((e, k)), np.empty((e, k, k)) if consistent else None
-        continuum.masses(self.nodes, self.x, np.ascontiguousarray(full.values), np.ascontiguousarray(full.slopes),
+        loops.masses(self.nodes, self.x, np.ascontiguousarray(full.values), np.ascontiguousarray(full.slopes),
                          full.weights, self.plane, self.thickness, self.elements.density, matrix, lumped)  # fmt: skip
         return lumped, matrix
 
     def mass(self, sink: Sink, *, lumped: Floats | None = None) -> None:
         own, matrix = self._masses(consistent=lumped is None)
         if lumped is not None:
-            for c in self.dofs:
-                np.add.at(lumped[:, c], self.nodes, own)
+            for dof in self.dofs:
+                np.add.at(lumped[:, dof], self.nodes, own)
             return
         assert matrix is not None
         c, (e, k) = len(self.dofs), self.nodes.shape

@@ -17,21 +17,23 @@ from scipy.special import roots_jacobi
 
 Floats = NDArray[np.float64]
 
-_QUAD = [(-1, -1), (1, -1), (1, 1), (-1, 1)]
-_QUAD_EDGES = [(0, -1), (1, 0), (0, 1), (-1, 0)]
-_TRI = [(0, 0), (1, 0), (0, 1)]
-_TRI_EDGES = [(0.5, 0), (0.5, 0.5), (0, 0.5)]
-_HEX = [(*p, t) for t in (-1, 1) for p in _QUAD]
-_HEX_EDGES = [(*p, t) for t in (-1, 1) for p in _QUAD_EDGES] + [(*p, 0) for p in _QUAD]
-_HEX_FACES = [(-1, 0, 0), (1, 0, 0), (0, -1, 0), (0, 1, 0), (0, 0, -1), (0, 0, 1)]
-_WEDGE = [(*p, t) for t in (-1, 1) for p in _TRI]
-_WEDGE_EDGES = [(*p, t) for t in (-1, 1) for p in _TRI_EDGES] + [(*p, 0) for p in _TRI]
-_TET = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
-_TET_EDGES = [(0.5, 0, 0), (0.5, 0.5, 0), (0, 0.5, 0), (0, 0, 0.5), (0.5, 0, 0.5), (0, 0.5, 0.5)]
-_PYRAMID = [*((*p, 0) for p in _QUAD), (0, 0, 1)]
-_PYRAMID_EDGES = [*((*p, 0) for p in _QUAD_EDGES), *((0.5 * r, 0.5 * s, 0.5) for r, s in _QUAD)]
+Points = list[tuple[float, ...]]
 
-NODES: dict[str, list[tuple[float, ...]]] = {
+_QUAD: Points = [(-1, -1), (1, -1), (1, 1), (-1, 1)]
+_QUAD_EDGES: Points = [(0, -1), (1, 0), (0, 1), (-1, 0)]
+_TRI: Points = [(0, 0), (1, 0), (0, 1)]
+_TRI_EDGES: Points = [(0.5, 0), (0.5, 0.5), (0, 0.5)]
+_HEX: Points = [(*p, t) for t in (-1, 1) for p in _QUAD]
+_HEX_EDGES: Points = [(*p, t) for t in (-1, 1) for p in _QUAD_EDGES] + [(*p, 0) for p in _QUAD]
+_HEX_FACES: Points = [(-1, 0, 0), (1, 0, 0), (0, -1, 0), (0, 1, 0), (0, 0, -1), (0, 0, 1)]
+_WEDGE: Points = [(*p, t) for t in (-1, 1) for p in _TRI]
+_WEDGE_EDGES: Points = [(*p, t) for t in (-1, 1) for p in _TRI_EDGES] + [(*p, 0) for p in _TRI]
+_TET: Points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+_TET_EDGES: Points = [(0.5, 0, 0), (0.5, 0.5, 0), (0, 0.5, 0), (0, 0, 0.5), (0.5, 0, 0.5), (0, 0.5, 0.5)]
+_PYRAMID: Points = [*((*p, 0) for p in _QUAD), (0, 0, 1)]
+_PYRAMID_EDGES: Points = [*((*p, 0) for p in _QUAD_EDGES), *((0.5 * r, 0.5 * s, 0.5) for r, s in _QUAD)]
+
+NODES: dict[str, Points] = {
     "line2": [(-1,), (1,)],
     "line3": [(-1,), (1,), (0,)],
     "tri3": _TRI,
@@ -118,7 +120,7 @@ def functions(kind: str, points: Floats) -> tuple[Floats, Floats]:
     points = np.atleast_2d(np.asarray(points, dtype=float))
     inverse = _inverse(kind)
     values, slopes = _terms(kind, points)
-    return values @ inverse, np.einsum("gmd,mn->gnd", slopes, inverse)
+    return values @ inverse, np.asarray(np.einsum("gmd,mn->gnd", slopes, inverse))
 
 
 @functools.cache
@@ -167,13 +169,13 @@ def extrapolation(kind: str, gauss: tuple[int, ...] = ()) -> Floats:
     if rank < at_points.shape[1]:  # fewer points than that: what is linear, or the mean
         keep = [i for i, e in enumerate(TERMS[plain]) if sum(e) <= (1 if t.count > dimension(kind) else 0)]
         at_points, at_nodes = at_points[:, keep], at_nodes[:, keep]
-    return np.ascontiguousarray(at_nodes @ np.linalg.pinv(at_points))
+    return np.ascontiguousarray(at_nodes @ np.linalg.pinv(at_points), dtype=float)
 
 
 @functools.cache
 def _inverse(kind: str) -> Floats:
     values, _ = _terms(kind, np.array(NODES[kind], dtype=float))
-    return np.linalg.inv(values)
+    return np.asarray(np.linalg.inv(values), dtype=float)
 
 
 def _terms(kind: str, points: Floats) -> tuple[Floats, Floats]:

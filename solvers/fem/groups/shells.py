@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..materials import PLASTIC_STRAIN, state_rows
-from . import mitc4
+from ...materials import PLASTIC_STRAIN, state_rows
+from ..elements import mitc4_loops as mitc4
+from ..elements.points import advance_plane_stress, elastic_modulus
+from ..elements.shapes import table
+from ..problem import SMALL, Elements
+from ..shape import Shape
+from ..structure import Structure
 from .group import CHUNK, Bad, Sink
-from .points import advance_plane_stress, elastic_modulus
-from .problem import SMALL, Elements
-from .shape import Shape
-from .shapes import table
-from .structure import Structure
 
 Floats = NDArray[np.float64]
 DRILL = 1e-3  # of the shear modulus times the thickness

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..materials import PLASTIC_STRAIN, state_rows
+from ...materials import PLASTIC_STRAIN, state_rows
+from ..elements.points import advance_uniaxial
+from ..problem import SMALL, Elements
+from ..shape import Shape
+from ..structure import Structure
 from .group import Bad, Sink
-from .points import advance_uniaxial
-from .problem import SMALL, Elements
-from .shape import Shape
-from .structure import Structure
 
 Floats = NDArray[np.float64]
 
@@ -56,8 +56,9 @@ class BarGroup:
         self._step[:] = self._strain_of(shape) - self._strain_of(before)
         self._history[:] = self.history
         modulus = np.empty(len(self.nodes))
-        advance_uniaxial(self.elements.law, self._step, self.stress, self.trial, self._history, self.elements.density, dt,
-                         self._work, self._scratch, modulus, self._kept)  # fmt: skip
+        el = self.elements
+        advance_uniaxial(el.law, self._step, self.stress, self.trial, self._history, el.density, dt, self._work,
+                         self._scratch, modulus, self._kept)  # fmt: skip
         small = self.elements.geometry == SMALL
         axis = self._axis
         if not small:
