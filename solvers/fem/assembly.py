@@ -63,7 +63,8 @@ class Assembly:
         self.structure = structure.build(self.free, [g.elements.nodes for g in self.groups], symmetric=symmetric)
         for group in self.groups:
             group.bind(self.structure)
-        self.stiffness = sum(elastic_modulus(g.elements.law)[0] * float(g.volume.sum()) for g in self.groups)
+        solid = [g for g in self.groups if g.elements.law is not None]
+        self.stiffness = sum(elastic_modulus(g.elements.law)[0] * float(g.volume.sum()) for g in solid)
         self.still = np.broadcast_to(np.eye(3), (self.n, 3, 3)).copy() if _turns(problem) else None
         self.where = np.flatnonzero(self.free.ravel())
         self.transform = self._relations() if problem.relations else None

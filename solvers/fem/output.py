@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 def is_linear(problem: Problem) -> bool:
     """Whether one factorisation answers all steps: linear laws, small displacements, loads that do not follow."""
     return (
-        all(isinstance(e.law, Elastic) and e.geometry == SMALL for e in problem.elements)
+        all(isinstance(e.law, Elastic | None) and e.geometry == SMALL for e in problem.elements)
         and not any(load.follows for load in problem.face_loads)
         and not any(m.incremental for m in problem.motions)
     )

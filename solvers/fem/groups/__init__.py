@@ -2,27 +2,41 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
 from ..elements.directors import directors
-from ..problem import Problem
+from ..problem import Elements, Problem
 from .bars import BarGroup
+from .beams import BeamGroup
 from .continuum import ContinuumGroup
 from .group import Group
 from .shells import ShellGroup
+from .supports import PointGroup
+
+_CLASSES: dict[str, Callable[[Elements, NDArray[np.float64]], Group]] = {
+    "solid": ContinuumGroup,
+    "plane": ContinuumGroup,
+    "truss": BarGroup,
+    "beam": BeamGroup,
+    "spring": PointGroup,
+    "mass": PointGroup,
+}
 
 
 def make_groups(problem: Problem) -> list[Group]:
-    """The groups of a problem. ValueError for a family that is not computed."""
+    """The groups of a problem. ValueError for what is not computed."""
     shells = [k for k, e in enumerate(problem.elements) if e.family == "shell"]
     corners = [problem.elements[k].nodes[:, :4] for k in shells]
     normals = dict(zip(shells, directors(problem.x, corners, problem.fixed), strict=True)) if shells else {}
     groups: list[Group] = []
     for k, e in enumerate(problem.elements):
-        if e.family in ("solid", "plane"):
-            groups.append(ContinuumGroup(e, problem.x))
-        elif e.family == "truss":
-            groups.append(BarGroup(e, problem.x))
-        elif e.family == "shell" and e.kind == "quad4":
+        if e.family == "shell" and e.kind == "quad4":
             groups.append(ShellGroup(e, problem.x, normals[k]))
+        elif e.family in _CLASSES:
+            groups.append(_CLASSES[e.family](e, problem.x))
         else:
             raise ValueError(f"elements {e.kind} of the family {e.family!r} are not computed")
     return groups
