@@ -29,6 +29,33 @@ def _equivalent(stress, z, i):
 
 
 @kernel
+def follow(g0, g1, n, z, source, sign, arrays):
+    """The images' `nominal` and kappa, of the images g0..g1 that stand at n + g: a mirror changes signs."""
+    nominal = arrays.nominal
+    for g in range(g0, g1):
+        i = source[g]
+        j = n + g
+        xy = sign[0, g] * sign[1, g]
+        arrays.hourglass[KAPPA, j] = arrays.hourglass[KAPPA, i]
+        nominal[0, j] = nominal[0, i]
+        if z is not None:
+            yz = sign[1, g] * sign[2, g]
+            zx = sign[2, g] * sign[0, g]
+            nominal[1, j] = xy * nominal[1, i]
+            nominal[2, j] = zx * nominal[2, i]
+            nominal[3, j] = xy * nominal[3, i]
+            nominal[4, j] = nominal[4, i]
+            nominal[5, j] = yz * nominal[5, i]
+            nominal[6, j] = zx * nominal[6, i]
+            nominal[7, j] = yz * nominal[7, i]
+            nominal[8, j] = nominal[8, i]
+        else:
+            nominal[1, j] = xy * nominal[1, i]
+            nominal[2, j] = xy * nominal[2, i]
+            nominal[3, j] = nominal[3, i]
+
+
+@kernel
 def nominal_stress(i0, i1, z, reference, arrays):
     """After the law: density, V P M^-1 - kappa (F - I)/2 into `nominal`, and the work on the hourglass modes.
 
