@@ -7,10 +7,13 @@ import numpy as np
 from ..jit import kernel
 from ..materials import PLASTIC_STRAIN
 
-# rows of `hourglass`: psi [volume], its change in the last step, kappa [pressure], largest equivalent stress
-PSI, CHANGE, KAPPA, BORNE = range(4)
-HOURGLASS = 4
+# rows of `hourglass`: psi [volume], its change in the last step, kappa [pressure], largest equivalent stress, and the
+# length of artificial viscosity, zero of particles that are not total-Lagrangian: h, but no more than FLATTENED times
+# the distance to the nearest neighbour. Over the h of the start the viscosity of a flattened body limits the step.
+PSI, CHANGE, KAPPA, BORNE, LENGTH = range(5)
+HOURGLASS = 5
 
+FLATTENED = 1.2  # whatever the deck's option: no step longer than this times nearest distance / wave speed
 CRUSHED = 0.01  # det F below this, or
 STRETCHED = 50.0  # |F| above this: the body does not stay whole
 YIELDING = 0.05  # the hourglass stress of a particle that has flowed, in the greatest stress it has borne
