@@ -2,7 +2,7 @@
 
 DefineConstant[ length = {0.2, Name "length"} ];
 DefineConstant[ height = {0.02, Name "height"} ];
-DefineConstant[ clamp = {0.01, Name "clamp"} ];    // length that is held, a multiple of the spacing
+DefineConstant[ clamp = {0.02, Name "clamp"} ];    // length that is held, a multiple of the spacing
 
 Point(1) = {-clamp, -height / 2, 0};
 Point(2) = {length, -height / 2, 0};
