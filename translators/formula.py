@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from zrno.translators.model import Floats
 
 LONGEST = 500  # characters
+DEEPEST = 250  # operations within each other
 FUNCTIONS: dict[str, Callable[..., Any]] = {
     "sqrt": np.sqrt, "exp": np.exp, "log": np.log, "sin": np.sin, "cos": np.cos, "tan": np.tan, "sinh": np.sinh,
     "cosh": np.cosh, "tanh": np.tanh, "atan2": np.arctan2, "abs": np.abs, "min": np.minimum, "max": np.maximum,
@@ -86,15 +87,18 @@ def _tree(text: str) -> ast.expr:
         return ast.parse(text.strip(), mode="eval").body
 
 
-def _check(node: ast.expr, *, boolean: bool) -> None:
+def _check(node: ast.expr, *, boolean: bool, depth: int = DEEPEST) -> None:
     """ValueError for what is neither a number nor, where boolean, a comparison."""
+    if depth == 0:
+        raise ValueError
+    below = depth - 1
     match node:
         case ast.BoolOp(values=values) if boolean:
             for value in values:
-                _check(value, boolean=True)
+                _check(value, boolean=True, depth=below)
         case ast.Compare(left=left, ops=[op], comparators=[right]) if boolean and type(op) in _COMPARISONS:
-            _check(left, boolean=False)
-            _check(right, boolean=False)
+            _check(left, boolean=False, depth=below)
+            _check(right, boolean=False, depth=below)
         case _ if boolean:
             raise ValueError
         case ast.Constant(value=int() | float() as value) if not isinstance(value, bool) and abs(value) < 1e300:
@@ -102,15 +106,15 @@ def _check(node: ast.expr, *, boolean: bool) -> None:
         case ast.Name(id=name) if name in _NAMES:
             pass
         case ast.UnaryOp(op=op, operand=operand) if type(op) in _OPERATORS:
-            _check(operand, boolean=False)
+            _check(operand, boolean=False, depth=below)
         case ast.BinOp(left=left, op=op, right=right) if type(op) in _OPERATORS:
-            _check(left, boolean=False)
-            _check(right, boolean=False)
+            _check(left, boolean=False, depth=below)
+            _check(right, boolean=False, depth=below)
         case ast.Call(func=ast.Name(id=name), args=args, keywords=[]) if name in FUNCTIONS:
             if len(args) != (2 if name in _TWO else 1):
                 raise ValueError
             for arg in args:
-                _check(arg, boolean=False)
+                _check(arg, boolean=False, depth=below)
         case _:
             raise ValueError
 
