@@ -1,7 +1,7 @@
 """Formulas of the place in settings: `-80 * x / (x**2 + y**2)` for a velocity, `x < 0` for a region.
 
-They are Python expressions of numbers, x, y, z, pi and the functions below, read as a tree and computed on whole arrays;
-nothing else of Python is let in.
+They are Python expressions of numbers, x, y, z, pi and the functions below, read as a tree and computed on whole
+arrays; nothing else of Python is let in.
 """
 
 from __future__ import annotations

@@ -17,8 +17,8 @@ FLATTENED = 1.2  # whatever the deck's option: no step longer than this times ne
 CRUSHED = 0.01  # det F below this, or
 STRETCHED = 50.0  # |F| above this: the body does not stay whole
 # The hourglass stress of a particle that has flowed, in the greatest stress that it has borne. At 0.05 the modes of a
-# shell that implodes (samples/verney_shell) grew until particles met; at 0.1, 0.2, 0.5 it comes to rest at 49.80, 49.96,
-# 50.12 mm (exact 50.00).
+# shell that implodes (samples/verney_shell) grew until particles met; at 0.1, 0.2, 0.5 it comes to rest at 49.80,
+# 49.96, 50.12 mm (exact 50.00).
 YIELDING = 0.2
 
 

@@ -130,8 +130,8 @@ def place_images(p: Problem, s: State, shape: Any) -> ghosts.Images:
         beyond = np.flatnonzero(depth <= NEAREST * s.rows("h")[0, : s.n])
         if len(beyond):
             raise ValueError(
-                f"{len(beyond)} particle(s) lie on the symmetry plane {'xyz'[plane.axis]} = {plane.position:g} or beyond "
-                f"it, the first is particle {s.id[beyond[0]]}: a body that stays whole begins half a spacing from it"
+                f"{len(beyond)} particle(s) lie on the symmetry plane {'xyz'[plane.axis]} = {plane.position:g} or "
+                f"beyond it, the first is particle {s.id[beyond[0]]}: a body that stays whole begins half a spacing from it"
             )
     s.rows("x_list")[:] = s.rows("x_start")
     found = ghosts.place_images(s, p.planes, s.n, shape.support * float(p.h.max()))
@@ -156,7 +156,9 @@ def build(p: Problem, s: State, shape: Any, threads: int, images: int = 0) -> Re
     assert y is not None
     h = s.rows("h")[0]
     density = s.rows("density")[0].copy()
-    volume = np.divide(s.rows("mass")[0], density, out=np.zeros(s.dummy + 1), where=density > 0.0)  # empty room has none
+    volume = np.divide(
+        s.rows("mass")[0], density, out=np.zeros(s.dummy + 1), where=density > 0.0
+    )  # empty room has none
     radius = shape.support * float(h[:n].max())
     uniform = bool(np.all(h[:n] == h[0]))
     reach = {"radius": radius if uniform else 0.5 * radius, "h": None if uniform else h * (0.5 * shape.support)}

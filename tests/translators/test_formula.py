@@ -16,7 +16,10 @@ PLACES = np.array([[1.0, 2.0, 3.0], [-0.5, 0.25, 0.0], [4.0, 0.0, -1.0]])
     ("text", "exact"),
     [
         ("-80 * x / (x**2 + y**2)", lambda x, y, z: -80.0 * x / (x**2 + y**2)),
-        ("max(x, 0) * sinh(2*y) - min(z, 1e-3)", lambda x, y, z: np.maximum(x, 0) * np.sinh(2 * y) - np.minimum(z, 1e-3)),
+        (
+            "max(x, 0) * sinh(2*y) - min(z, 1e-3)",
+            lambda x, y, z: np.maximum(x, 0) * np.sinh(2 * y) - np.minimum(z, 1e-3),
+        ),
         ("atan2(y, x) + pi + +abs(-z)", lambda x, y, z: np.arctan2(y, x) + np.pi + np.abs(z)),
         (" 3 ", lambda x, y, z: np.full(3, 3.0)),
     ],
@@ -57,6 +60,8 @@ def test_no_text_raises_anything_but_a_value_error(text: str) -> None:
         except ValueError:
             continue
         try:
-            assert np.all(np.isfinite(made.at(PLACES)))
-        except ValueError as error:
-            assert "is no number" in str(error)
+            values = made.at(PLACES)
+        except ValueError:
+            continue
+        assert values.shape == (3,)
+        assert np.all(np.isfinite(values))

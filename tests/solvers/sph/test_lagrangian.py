@@ -470,7 +470,7 @@ METAL = von_mises(1.0, 0.3, 0.02, 0.1)
 
 
 def folded(dimension: int, whole: bool) -> Solver:
-    """A block of metal that is squeezed along x and sheared, symmetric about each axis: all of it, or a corner of it."""
+    """A block of metal that is squeezed along x and sheared, symmetric about each axis: all of it, or a corner."""
     n, at = 5, 0.3  # the planes lie there
     x = lattice((n,) * dimension)
     v = np.zeros_like(x)
@@ -520,7 +520,10 @@ def test_a_body_in_a_corner_goes_on_bit_for_bit() -> None:
     ("change", "wrong"),
     [
         ({"planes": (dataclasses.replace(PLANE, kind=LIMIT),)}, "limit planes"),
-        ({"planes": (PLANE,), "bodies": (BODY, BODY), "body": np.arange(36) // 18, "potential": True}, "of several bodies"),
+        (
+            {"planes": (PLANE,), "bodies": (BODY, BODY), "body": np.arange(36) // 18, "potential": True},
+            "of several bodies",
+        ),
         ({"planes": (dataclasses.replace(PLANE, position=0.05),)}, "6 particle.s. lie on the symmetry plane x = 0.05"),
         ({"original": True}, "original"),
         ({"bodies": (BODY, BODY), "body": np.arange(36) // 18}, "kernel contact"),
