@@ -129,7 +129,7 @@ def _value(node: Any, places: dict[str, Any]) -> Any:
             return found
         case ast.Compare(left=left, ops=[op], comparators=[right]):
             return _COMPARISONS[type(op)](_value(left, places), _value(right, places))
-        case ast.Constant(value=value):
+        case ast.Constant(value=int() | float() as value):
             return np.float64(value)
         case ast.Name(id=name):
             return places[name]

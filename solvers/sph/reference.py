@@ -131,7 +131,8 @@ def place_images(p: Problem, s: State, shape: Any) -> ghosts.Images:
         if len(beyond):
             raise ValueError(
                 f"{len(beyond)} particle(s) lie on the symmetry plane {'xyz'[plane.axis]} = {plane.position:g} or "
-                f"beyond it, the first is particle {s.id[beyond[0]]}: a body that stays whole begins half a spacing from it"
+                f"beyond it, the first is particle {s.id[beyond[0]]}: a body that stays whole begins half a spacing "
+                "from it"
             )
     s.rows("x_list")[:] = s.rows("x_start")
     found = ghosts.place_images(s, p.planes, s.n, shape.support * float(p.h.max()))
