@@ -65,7 +65,7 @@ def test_a_stray_grain_is_no_part_of_the_heap() -> None:
 
 
 def test_clusters_are_counted_with_the_strays() -> None:
-    x = np.concatenate((block(4, 3), block(2, 2) + [9 * SPACING, 0.0, 0.0], [[0.0, 9.0, 0.0]]))
+    x = np.concatenate((block(4, 3), block(2, 2) + np.array([9 * SPACING, 0.0, 0.0]), [[0.0, 9.0, 0.0]]))
     now = cloud(x, dimension=2)
     assert of("clusters", now) == 3
     assert of("clusters", now, link=7.0) == 2  # over the gap of six cells
