@@ -340,7 +340,7 @@ def published(shared: Path, quantity: str) -> tuple[float, float]:
 
 
 def test_a_coarse_rod_mushrooms(shared: Path) -> None:
-    """Three particles across the radius: 1600 of them, a second or two. Finer ones: tests/samples/test_taylor_bar.py."""
+    """Three particles across the radius: 1600 of them. Finer ones: tests/samples/test_taylor_bar.py."""
     length, radius, row = taylor(3)
     low, high = published(shared, "final length mm")
     assert 0.96 * low < length < 1.04 * high
