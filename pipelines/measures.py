@@ -146,17 +146,27 @@ def profile(now: Cloud, *, axis: str, field: str, bins: int = BINS) -> tuple[Flo
             np.bincount(where, mass * values, bins)[held] / weight[held])  # fmt: skip
 
 
+def clusters(now: Cloud, *, link: float = _LINK) -> float:
+    """How many pieces there are: chains of neighbours not farther than `link` cells."""
+    return float(_heaps(now, link).max() + 1)
+
+
 def main_heap(now: Cloud) -> Cloud:
     """The particles that hang together with most of the mass: chains of neighbours not farther than _LINK cells."""
+    heap = _heaps(now, _LINK)
+    return now.only(heap == np.argmax(np.bincount(heap, now.mass)))
+
+
+def _heaps(now: Cloud, link: float) -> NDArray[np.int64]:
+    """Of each particle the number of its heap, from 0 on. link: of neighbours, in cells."""
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
     from scipy.spatial import cKDTree
 
     n = len(now.mass)
-    pairs = cKDTree(now.x).query_pairs(_LINK * 2.0 * float(np.median(now.half)), output_type="ndarray")
+    pairs = cKDTree(now.x).query_pairs(link * 2.0 * float(np.median(now.half)), output_type="ndarray")
     graph = coo_matrix((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
-    _, heap = connected_components(graph, directed=False)
-    return now.only(heap == np.argmax(np.bincount(heap, now.mass)))
+    return np.asarray(connected_components(graph, directed=False)[1], np.int64)
 
 
 def _distance(now: Cloud, axis: str, about: Sequence[float]) -> Floats:
@@ -178,6 +188,7 @@ MEASURES: dict[str, Callable[..., Any]] = {
     "back": back,
     "radius": radius,
     "inner_radius": inner_radius,
+    "clusters": clusters,
     "centre": centre,
     "speed": speed,
     "mean": mean,

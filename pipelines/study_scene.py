@@ -49,6 +49,7 @@ class Quantity(Section):
     field: str | None = None
     fraction: Annotated[float, Field(gt=0, le=1)] | None = None
     heap: bool | None = None
+    link: Positive | None = None
     bins: Annotated[int, Field(ge=1, le=10_000)] | None = None
 
     @property

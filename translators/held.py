@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from zrno.translators.formula import Formula
 from zrno.translators.model import Curve, Floats, Ints, Model
 from zrno.translators.particles import Filling
 from zrno.translators.report import Report
@@ -69,9 +70,12 @@ def of_particles(
                 near += int((code[nodes] > 0).sum())
             bc[mine], v[mine] = code[nodes], velocity[nodes]
         if entry is not None and entry["bc"]:
-            bc[mine] = BOUNDARY_CODES[entry["bc"]]
+            where = entry["bc_where"]
+            held = mine if where is None else mine[_values(where, filling.x[mine], "bc_where")]
+            bc[held] = BOUNDARY_CODES[entry["bc"]]
         if entry is not None and any(entry["velocity"]):
-            v[mine] = entry["velocity"]
+            for axis, component in enumerate(entry["velocity"]):
+                v[mine, axis] = _values(component, filling.x[mine], "velocity")
     report.approximate("constraints", near, "particles held, since the node nearest to them is")
     turning = [i for i in model.initial_velocities if i.rotation is not None and i.rotation.any()]
     report.drop("initial rotations", len(turning), "particles have none")
@@ -80,6 +84,16 @@ def of_particles(
         bc = np.array([0, 1, 2, 0, 4, 2, 1, 7])[bc]
         v[:, 2] = 0.0
     return bc, v
+
+
+def _values(said: float | Formula, x: Floats, key: str) -> Any:
+    """Of a number, or of a formula at places x (n, 3). ValueError where it is no number there."""
+    if not isinstance(said, Formula):
+        return said
+    try:
+        return said.at(x)
+    except ValueError as error:
+        raise ValueError(f"{key}: {error}") from None
 
 
 def _nearest(model: Model, part: int, x: Floats) -> Ints:

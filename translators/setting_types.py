@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from zrno.translators.formula import Formula, formula, region
 from zrno.translators.laws import LAWS, Law
 
 
@@ -73,6 +74,29 @@ def vector(value: Any) -> tuple[float, float, float]:
     except ValueError:
         raise ValueError("a list of three numbers") from None
     return x, y, z
+
+
+def field(value: Any) -> tuple[float | Formula, ...]:
+    """A vector whose components may be formulas of the place."""
+    if not isinstance(value, list) or len(value) != 3:
+        raise ValueError("a list of three numbers or formulas")
+    parse = number()
+    found: list[float | Formula] = []
+    for item in value:
+        try:
+            found.append(parse(item))
+        except ValueError:
+            if not isinstance(item, str):
+                raise ValueError("a list of three numbers or formulas") from None
+            found.append(formula(item))
+    return tuple(found)
+
+
+def place(value: Any) -> Formula | None:
+    """A region, by a formula."""
+    if value is None:
+        return None
+    return region(value if isinstance(value, str) else "")
 
 
 def some_vector(value: Any) -> tuple[float | None, ...] | None:

@@ -21,10 +21,8 @@ import numpy as np
 
 from ..bits import bits_of, of_bits
 from ..jit import kernel
-from .nominal import CHANGE, KAPPA, PSI
+from .nominal import CHANGE, FLATTENED, KAPPA, LENGTH, PSI
 from .pairs import ALONE
-
-FLATTENED = 1.2  # whatever the deck's option: no step longer than this times nearest distance / wave speed
 
 
 @kernel
@@ -273,5 +271,7 @@ def internal_force(i0, i1, z, plain, reference, arrays, numbers):
         arrays.ay[i] += fy * inverse
         distance2 = of_bits(least)
         arrays.nearest[i] = distance2
-        longest = min(longest, FLATTENED * np.sqrt(distance2) / numbers.wave[arrays.material[i]])
+        length = FLATTENED * np.sqrt(distance2)
+        arrays.hourglass[LENGTH, i] = min(length, arrays.h[i])
+        longest = min(longest, length / numbers.wave[arrays.material[i]])
     return longest

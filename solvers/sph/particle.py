@@ -8,6 +8,7 @@ from numba.extending import overload
 from ..jit import kernel
 from ..materials.law import JIT_OPTIONS, rotate_state, stress_update, wave_speed
 from ..materials.rotation import first_order_spin, spin_rotation
+from .nominal import LENGTH
 
 
 @kernel
@@ -26,6 +27,7 @@ def constitutive(
     s = arrays.s
     density = arrays.density
     state = arrays.state
+    whole = arrays.hourglass.shape[0] > 0
     for i in range(i0, i1):
         if material[i] != number:
             continue
@@ -89,7 +91,10 @@ def constitutive(
         )  # fmt: skip
         viscosity = 0.0
         if volumetric < 0.0:
-            closing = -volumetric / dt * arrays.h[i]
+            length = arrays.h[i]
+            if whole and arrays.hourglass[LENGTH, i] > 0.0:
+                length = arrays.hourglass[LENGTH, i]
+            closing = -volumetric / dt * length
             c = numbers.wave[number]
             if wave is not None:
                 c = wave[i]

@@ -3,6 +3,9 @@
 The list is made once, before the first step, and is never searched again; a run of one such body has no other. Where
 several bodies repel each other, the lists of pairs of different bodies are made anew only when something
 has moved by half of what is left between the bodies' boxes.
+
+A symmetry plane has images of the particles that were near it at the start, once and for all: they are neighbours like
+any others, and follow their sources.
 """
 
 from __future__ import annotations
@@ -14,11 +17,14 @@ from numpy.typing import NDArray
 
 from ..jit import exact_kernel, kernel
 from ..neighbours import Cells, NeighbourList
+from . import ghosts
 from .nominal import KAPPA
 from .pairs import TINY, WELL
 from .problem import Problem
 from .smoothing import inverse_root, normaliser, shape_slope, shape_value
 from .state import Floats, State
+
+NEAREST = 1e-3  # of h: particles nearer to a symmetry plane lie on it
 
 
 class Reference(NamedTuple):
@@ -92,7 +98,8 @@ def _young(law: Any) -> float:
 def check(p: Problem) -> None:
     """ValueError where a problem asks of bodies that stay whole what they cannot do together."""
     wrong = {
-        "boundary planes": bool(p.planes),
+        "periodic and limit planes": any(plane.kind != ghosts.SYMMETRY for plane in p.planes),
+        "symmetry planes of several bodies": bool(p.planes) and len(np.unique(p.body)) > 1,
         "the arithmetic of the original program": p.original,
         "kernel contact between bodies (but with the other kinds)": len(np.unique(p.body)) > 1 and not p.apart,
     }
@@ -112,8 +119,34 @@ def check(p: Problem) -> None:
             raise ValueError(f"the total-Lagrangian formulation does not go together with {name}")
 
 
-def build(p: Problem, s: State, shape: Any, threads: int) -> Reference:
+def place_images(p: Problem, s: State, shape: Any) -> ghosts.Images:
+    """The images of the start, with all that the reference list needs of them.
+
+    ValueError where a particle does not lie on the right side of a plane: it would meet its own image.
+    """
+    start = s.rows("x_start")[:, : s.n]
+    for plane in p.planes:
+        depth = (plane.position - start[plane.axis]) * plane.side
+        beyond = np.flatnonzero(depth <= NEAREST * s.rows("h")[0, : s.n])
+        if len(beyond):
+            raise ValueError(
+                f"{len(beyond)} particle(s) lie on the symmetry plane {'xyz'[plane.axis]} = {plane.position:g} or "
+                f"beyond it, the first is particle {s.id[beyond[0]]}: a body that stays whole begins half a spacing "
+                "from it"
+            )
+    s.rows("x_list")[:] = s.rows("x_start")
+    found = ghosts.place_images(s, p.planes, s.n, shape.support * float(p.h.max()))
+    at = slice(s.n, s.n + len(found))
+    for name in ("x", "x_start"):
+        s.rows(name)[:, at] = s.rows("x_list")[:, at]
+    s.rows("density")[:, at] = s.rows("density")[:, found.source]
+    return found
+
+
+def build(p: Problem, s: State, shape: Any, threads: int, images: int = 0) -> Reference:
     """The reference configuration is that of the start; hourglass control begins with its full stiffness.
+
+    images: that stand behind the particles.
 
     ValueError where a particle's neighbours lie in a plane or a line and leave its deformation open.
     """
@@ -124,15 +157,21 @@ def build(p: Problem, s: State, shape: Any, threads: int) -> Reference:
     assert y is not None
     h = s.rows("h")[0]
     density = s.rows("density")[0].copy()
-    volume = s.rows("mass")[0] / density
+    volume = np.divide(
+        s.rows("mass")[0], density, out=np.zeros(s.dummy + 1), where=density > 0.0
+    )  # empty room has none
     radius = shape.support * float(h[:n].max())
     uniform = bool(np.all(h[:n] == h[0]))
-    group = np.where(whole, s.material[:n], -1 - np.arange(n))  # others are nobody's neighbours here
+    reach = {"radius": radius if uniform else 0.5 * radius, "h": None if uniform else h * (0.5 * shape.support)}
     listed = NeighbourList(n)
-    listed.build(
-        Cells(n, x, y, z, radius), x, y, z, radius=radius if uniform else 0.5 * radius, skin=0.0,
-        h=None if uniform else h * (0.5 * shape.support), group=group, other=False, threads=threads, dummy=s.dummy,
-    )  # fmt: skip
+    if images:  # one body then, see `check`
+        listed.build_mapped(n, images, n, x, y, z, dummy=s.dummy, skin=0.0, threads=threads, **reach)
+    else:
+        group = np.where(whole, s.material[:n], -1 - np.arange(n))  # others are nobody's neighbours here
+        listed.build(
+            Cells(n, x, y, z, radius), x, y, z, skin=0.0, group=group, other=False, threads=threads, dummy=s.dummy,
+            **reach,
+        )  # fmt: skip
     weight = np.zeros(len(listed.rows), np.float32)
     _weigh(
         n, listed.first, listed.count, listed.rows, s.dummy, shape, x, y, z, h, volume,

@@ -93,7 +93,9 @@ class Solver:
         assert x is not None
         assert y is not None
         s.sort(Cells(self.n, x, y, z, self._shape.support * float(self.problem.h.max())).order, self.threads)
-        return reference.build(self.problem, s, self._shape, self.threads)
+        if self._mirrored:
+            self._images = reference.place_images(self.problem, s, self._shape)
+        return reference.build(self.problem, s, self._shape, self.threads, len(self._images))
 
     def kernels(self) -> str:
         """What the loops were built for, for the log."""

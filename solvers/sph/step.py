@@ -16,8 +16,7 @@ import numpy as np
 
 from ..jit import kernel
 from ..threads import barrier, claim, share
-from . import across, bearing, cures, ghosts, lagrangian, pairs, slip, walls
-from .nominal import nominal_stress
+from . import across, bearing, cures, ghosts, lagrangian, nominal, pairs, slip, walls
 from .particle import critical_step, drift, each_law, half_work, kick
 
 # entries of `progress`, the loop's own memory
@@ -158,7 +157,7 @@ def advance(
                 numbers,
             )  # fmt: skip
             if reference is not None:
-                arrays.reduced[thread, 3] = nominal_stress(i0, i1, z, reference, arrays)
+                arrays.reduced[thread, 3] = nominal.nominal_stress(i0, i1, z, reference, arrays)
             for i in range(i0, i1):
                 arrays.volume[i] = arrays.mass[i] / arrays.density[i]
             barrier(sync, threads)
@@ -170,6 +169,8 @@ def advance(
             if image_source is not None:
                 g0, g1 = share(len(image_source), thread, threads)
                 ghosts.follow_stress(g0, g1, offset, z, correction, image_source, image_sign, arrays)
+                if reference is not None:
+                    nominal.follow(g0, g1, offset, z, image_source, image_sign, arrays)
                 barrier(sync, threads)
             if walled is not None:
                 bearing.bear(i0, i1, z, shape, correction, last, arrays, numbers)

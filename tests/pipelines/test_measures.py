@@ -64,6 +64,14 @@ def test_a_stray_grain_is_no_part_of_the_heap() -> None:
     assert of("radius", now, axis="z", about=(0, 0, 0), heap=True) == pytest.approx(np.hypot(2.75, 1.75) + SPACING / 2)
 
 
+def test_clusters_are_counted_with_the_strays() -> None:
+    x = np.concatenate((block(4, 3), block(2, 2) + np.array([9 * SPACING, 0.0, 0.0]), [[0.0, 9.0, 0.0]]))
+    now = cloud(x, dimension=2)
+    assert of("clusters", now) == 3
+    assert of("clusters", now, link=7.0) == 2  # over the gap of six cells
+    assert of("clusters", cloud(block(4, 3)[::2] * 1.6, dimension=2), link=1.5) > 1
+
+
 def test_radii_of_a_ring() -> None:
     angle = np.linspace(0, 2 * np.pi, 60, endpoint=False)
     ring = np.concatenate([r * np.stack([np.cos(angle), 0 * angle, np.sin(angle)], 1) for r in (4.0, 4.5, 5.0)])

@@ -121,6 +121,35 @@ def test_every_field_of_the_control_cards(tank: Model, tmp_path: Path) -> None:
     assert (deck.particles.velocity == [1, 2, 0]).all()
 
 
+def test_velocities_and_what_is_held_by_formulas_of_the_place(tank: Model, tmp_path: Path) -> None:
+    own = {"velocity": ["-2 * x / (1 + y**2)", 0.5, "0"], "bc": "xyz", "bc_where": "x < 0.2 and y > 0.1"}
+    deck = made(tank, WATER | {"materials": {"water": WATER["materials"]["water"] | own}}, tmp_path / "tank.mcm")
+    x, y, _ = deck.particles.x.T
+    assert deck.particles.velocity[:, 0] == pytest.approx(-2.0 * x / (1.0 + y**2), rel=1e-7)
+    assert (deck.particles.velocity[:, 1:] == [0.5, 0.0]).all()
+    assert deck.particles.bc.tolist() == [7 if a < 0.2 and b > 0.1 else 0 for a, b in zip(x, y, strict=True)]
+
+
+@pytest.mark.parametrize(
+    ("own", "wrong"),
+    [
+        ({"velocity": ["t", 0, 0]}, "velocity is not what it should be .*a formula of numbers"),
+        ({"velocity": [None, 0, 0]}, "a list of three numbers or formulas"),
+        ({"bc_where": "x"}, "bc_where is not what it should be .*a region such as"),
+        ({"bc_where": 3}, "a region such as"),
+    ],
+)
+def test_formulas_that_are_none(own: dict, wrong: str) -> None:
+    with pytest.raises(InputError, match=wrong):
+        load_settings(overrides={"materials": {"water": own}})
+
+
+def test_a_formula_without_a_value_somewhere(tank: Model) -> None:
+    given = {"materials": {"water": WATER["materials"]["water"] | {"velocity": ["sqrt(x - 0.5)", 0, 0]}}}
+    with pytest.raises(ValueError, match=r"velocity: sqrt\(x - 0.5\) is no number at 0.025, 0.025, 0"):
+        to_particles(tank, load_settings(overrides=given), spacing=0.05)
+
+
 def test_the_equation_of_a_keyword_deck(tmp_path: Path) -> None:
     (tmp_path / "a.k").write_text(
         "*KEYWORD\n*NODE\n1,0,0,0\n2,1,0,0\n*ELEMENT_SPH\n1,1,1.0\n2,1,1.0\n*PART\nwater\n1,0,1,1\n"
