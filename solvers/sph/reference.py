@@ -112,8 +112,10 @@ def check(p: Problem) -> None:
             raise ValueError(f"the total-Lagrangian formulation does not go together with {name}")
 
 
-def build(p: Problem, s: State, shape: Any, threads: int) -> Reference:
+def build(p: Problem, s: State, shape: Any, threads: int, *, by_cell: bool = True) -> Reference:
     """The reference configuration is that of the start; hourglass control begins with its full stiffness.
+
+    by_cell: whether the particles stand in the order of the cells.
 
     ValueError where a particle's neighbours lie in a plane or a line and leave its deformation open.
     """
@@ -129,10 +131,17 @@ def build(p: Problem, s: State, shape: Any, threads: int) -> Reference:
     uniform = bool(np.all(h[:n] == h[0]))
     group = np.where(whole, s.material[:n], -1 - np.arange(n))  # others are nobody's neighbours here
     listed = NeighbourList(n)
-    listed.build(
-        Cells(n, x, y, z, radius), x, y, z, radius=radius if uniform else 0.5 * radius, skin=0.0,
-        h=None if uniform else h * (0.5 * shape.support), group=group, other=False, threads=threads, dummy=s.dummy,
-    )  # fmt: skip
+    reach = radius if uniform else 0.5 * radius
+    lengths = None if uniform else h * (0.5 * shape.support)
+    if by_cell:
+        listed.build(
+            Cells(n, x, y, z, radius), x, y, z, radius=reach, skin=0.0, h=lengths, group=group, other=False,
+            threads=threads, dummy=s.dummy,
+        )  # fmt: skip
+    else:
+        listed.build_mapped(
+            n, 0, n, x, y, z, dummy=s.dummy, radius=reach, skin=0.0, h=lengths, group=group, threads=threads
+        )
     weight = np.zeros(len(listed.rows), np.float32)
     _weigh(
         n, listed.first, listed.count, listed.rows, s.dummy, shape, x, y, z, h, volume,

@@ -19,7 +19,7 @@ from ..frame import Frame
 from ..materials import PLASTIC_STRAIN
 from ..neighbours import Cells, NeighbourList
 from ..threads import available, run
-from . import across, blame, ghosts, measures, probes, reference, setup, step
+from . import across, blame, ghosts, local, measures, probes, reference, setup, step
 from .contact import contact_of
 from .problem import Cures, Problem
 from .smoothing import shape_of
@@ -65,6 +65,9 @@ class Solver:
         self._laws = tuple(b.law for b in problem.bodies)
         self._numbers = setup.numbers_of(problem, self._contact, self._shape, mirrors=self._mirrors is not None)
         setup.fill(self._state, problem, self._numbers, has, self._shape)
+        self._stiff = local.classes(problem, self._numbers.wave, xsph=has.xsph)
+        self._inner = np.zeros(local.INNER)
+        self._slow = n if self._stiff is None else int(np.count_nonzero(~self._stiff[problem.body]))
         self._spare = 0.5 * self._skin  # how far particles go before the next list
         self._reference = self._make_reference() if has.lagrangian else None
         self._rebuild()
@@ -92,12 +95,24 @@ class Solver:
         x, y, z = (s.row("x_start", k) for k in range(3))
         assert x is not None
         assert y is not None
-        s.sort(Cells(self.n, x, y, z, self._shape.support * float(self.problem.h.max())).order, self.threads)
-        return reference.build(self.problem, s, self._shape, self.threads)
+        cells = Cells(self.n, x, y, z, self._shape.support * float(self.problem.h.max()))
+        s.sort(self._ordered(cells), self.threads)
+        return reference.build(self.problem, s, self._shape, self.threads, by_cell=self._stiff is None)
+
+    def _ordered(self, cells: Cells) -> NDArray[np.int64]:
+        """The order of the cells; with local steps the slow bodies before the stiff ones."""
+        if self._stiff is None:
+            return cells.order
+        return local.in_front(cells.order, self._stiff[self._state.material[: cells.n]])
 
     def kernels(self) -> str:
         """What the loops were built for, for the log."""
-        return setup.described(self.problem, self._contact, self._cures, self._has, self.threads)
+        text = setup.described(self.problem, self._contact, self._cures, self._has, self.threads)
+        if self._stiff is None:
+            return text
+        names = ", ".join(b.name for b, stiff in zip(self.problem.bodies, self._stiff, strict=True) if stiff)
+        inner = self._progress[step.NEXT] / self._inner[local.FAST_NEXT]
+        return f"{text}, local steps: about {max(1, round(inner))} of {names} in one of the others"
 
     # the loop
 
@@ -148,6 +163,8 @@ class Solver:
                 raise made
 
     def _run_kernel(self, until: float, steps: int, pause: float = math.inf) -> int:
+        if self._stiff is not None:
+            return self._run_local(until, steps, pause)
         a = self._arrays()
         p, cures, has = self.problem, self._cures, self._has
         solid = p.dimension == 3
@@ -205,6 +222,54 @@ class Solver:
             )[0]
         )
 
+    def _run_local(self, until: float, steps: int, pause: float) -> int:
+        """`_run_kernel` with local steps."""
+        a = self._arrays()
+        p, has, contact = self.problem, self._has, self._contact
+        solid = p.dimension == 3
+        return int(
+            run(
+                local.advance,
+                self.threads,
+                self.n,
+                self._slow,
+                self._shape,
+                True if solid else None,
+                a.z if solid else None,
+                None if self._uniform_h or not self._plain else a.h,
+                None if self._uniform_mass or not self._plain else a.mass,
+                a.nearest if p.step_option == 2 and self._plain else None,
+                True if p.dimension == 1 else None,
+                a.cx,
+                contact.law,
+                a.correction if has.correction else None,
+                a.bx,
+                self._cures.artificial_stress if has.artificial else None,
+                a.density_rate,
+                a.stress_rate if has.stress_rate else None,
+                a.heat,
+                a.wave,
+                contact.friction,
+                contact.damping,
+                contact.normals,
+                contact.by_normals,
+                contact.walls,
+                a.wall_slip if has.wall_slip else None,
+                a.contact_heat,
+                True if self._plain else None,
+                self._reference,
+                a,
+                self._numbers,
+                self._laws,
+                self._progress,
+                self._inner,
+                float(until),
+                float(pause),
+                steps,
+                self._spare**2,
+            )[0]
+        )
+
     def _arrays(self) -> Arrays:
         return self._state.arrays(self._list, self._others, self._reduced)
 
@@ -232,7 +297,7 @@ class Solver:
         rows = s.rows("x_list")
         cells = Cells(n, rows[0], rows[1], rows[2] if s.d == 3 else None, radius + self._skin)
         if sort:
-            s.sort(cells.order, self.threads)
+            s.sort(self._ordered(cells), self.threads)
         if self._mirrored:
             self._make_images(radius + self._skin)
         x, y, z = s.row("x_list", 0), s.row("x_list", 1), s.row("x_list", 2)
@@ -247,7 +312,7 @@ class Solver:
         of_kernel = radius, h
         for neighbours, other in wanted:
             radius, h = self._contact.pairs(*of_kernel, self._shape.support) if other else of_kernel
-            if self._mirrored:
+            if self._mirrored or self._stiff is not None:
                 neighbours.build_mapped(
                     n, len(self._images), self.n, x, y, z, dummy=s.dummy, radius=radius, skin=self._skin, h=h,
                     group=group, other=other, threads=self.threads,
@@ -290,6 +355,9 @@ class Solver:
         s, n = self._state, self.n
         back = 0.0 if self.problem.original else 0.5 * float(self._progress[step.LAST])
         velocity = s.rows("u")[:, :n] + back * s.rows("a")[:, :n]
+        if self._stiff is not None:
+            u, a, c = (s.rows(name)[:, self._slow : n] for name in ("u", "a", "c"))
+            velocity[:, self._slow :] = local.velocity(u, a, c, float(self._progress[step.LAST]), self._inner)
         for k in range(s.d):
             velocity[k, (s.fixed[:n] >> k) & 1 == 1] = 0.0
         return velocity
@@ -359,6 +427,7 @@ class Solver:
         data |= {"id": s.id[:n].copy(), "material": s.material[:n].copy(), "fixed": s.fixed[:n].copy()}
         return data | {
             "progress": self._progress.copy(),
+            "inner": self._inner.copy(),
             "start_energy": np.array(list(self._start_energy.values())),
             "time": self.time,
             "step": self.step,
@@ -376,6 +445,7 @@ class Solver:
             getattr(s, name)[:n] = data[name]
         self.live = int(data["live"])
         self._progress[:] = data["progress"]
+        self._inner[:] = data.get("inner", 0.0)  # of before there were local steps
         if self.problem.body_curve is not None:
             step.body_force_at(self._progress[step.TIME], self._numbers)
         self._start_energy = dict(zip(self._start_energy, np.asarray(data["start_energy"]).tolist(), strict=True))
