@@ -1,11 +1,16 @@
 """Local time steps: stiff bodies go several small steps within one of the others.
 
 Bodies that repel each other (`contact`) fall into two classes, the slow ones in front of the stiff ones in every array.
-At the beginning of an outer step of length H the forces between bodies and of walls are found once. They push as an
-impulse of H (the reversible multiple-step scheme, Tuckerman, Berne & Martyna 1992): on both bodies of a pair with the
-same force for the same time, so that momentum is conserved pair by pair. Inside, the slow bodies take one
-step, the stiff ones as many as they need, with their own neighbours only, which are all of their own body. The phases
-and the invariant between steps are those of `step`; v of a stiff body stands half an inner step before.
+At the beginning of an outer step of length H the forces F between bodies and of walls are found once. Inside it the
+slow bodies take one step, the stiff ones as many as they need, with their own neighbours only, which are all of their
+own body. The slow ones are kicked as ever, F_n (H' + H)/2 with the H' before. The stiff ones have all through the step
+    G_n = F_n + (F_n - F_n-1) H'/(2 H)
+which is F in the middle of the step, extrapolated; what they have been given then lags behind the slow ones' by
+(F_n - F_n-1) H'/2, never more, and pair by pair: with that in the velocities (`velocity`), momentum is conserved to
+the last digits. The same F as one impulse at the beginning (Tuckerman, Berne & Martyna 1992) makes the surface of a
+steel plate ring, and its viscosity takes that energy, which the contact has made: 39 % of a soft block's kinetic energy
+where this makes 0.01 %. The phases and the invariant between steps are those of `step`; u of a stiff body stands half an
+inner step before.
 
 Kernel contact cannot be split like this: the force on a particle of sand beside steel has the steel's stress in it,
 and is as stiff as the steel.
@@ -79,23 +84,49 @@ def in_front(order: NDArray[np.int64], stiff: NDArray[np.bool_]) -> NDArray[np.i
     return np.concatenate((order[~stiff[order]], order[stiff[order]]))
 
 
-def velocity(u: Floats, a: Floats, c: Floats, last: float, inner: Floats) -> Floats:
-    """(d, m) velocities of the stiff bodies at the time of the positions.
+def velocity(u: Floats, a: Floats, c: Floats, held: Floats, last: float, inner: Floats) -> Floats:
+    """(d, m) velocities of the stiff bodies at the time of the positions, with what the contact still owes them.
 
-    u: half an inner step before; a: accelerations, c: the contact's part of them; last: the outer step.
+    u: half an inner step before; a: accelerations by the body itself, c: by others; held: (2 d, m) G and F of the step
+    before; last: the outer step.
     """
-    fast = float(inner[FAST_LAST])
-    return u + 0.5 * fast * a + 0.5 * (last - fast) * c
+    given, before = np.split(held, 2)
+    return u + 0.5 * float(inner[FAST_LAST]) * (a + given) + 0.5 * last * (c - before)
 
 
 @kernel
-def _impulse(i0, i1, z, duration, arrays):
-    """v += contact acceleration x duration."""
+def _hold(i0, i1, z, part, arrays):
+    """G and F of the outer step that begins. part: H'/(2 H)."""
+    held = arrays.held
+    d = 3 if z is not None else 2
     for i in range(i0, i1):
-        arrays.u[i] += arrays.cx[i] * duration
-        arrays.v[i] += arrays.cy[i] * duration
+        held[0, i] = arrays.cx[i] + (arrays.cx[i] - held[d, i]) * part
+        held[1, i] = arrays.cy[i] + (arrays.cy[i] - held[d + 1, i]) * part
+        held[d, i] = arrays.cx[i]
+        held[d + 1, i] = arrays.cy[i]
         if z is not None:
-            arrays.w[i] += arrays.cz[i] * duration
+            held[2, i] = arrays.cz[i] + (arrays.cz[i] - held[5, i]) * part
+            held[5, i] = arrays.cz[i]
+
+
+@kernel
+def _push(i0, i1, z, duration, arrays):
+    """v += G duration."""
+    for i in range(i0, i1):
+        arrays.u[i] += arrays.held[0, i] * duration
+        arrays.v[i] += arrays.held[1, i] * duration
+        if z is not None:
+            arrays.w[i] += arrays.held[2, i] * duration
+
+
+@kernel
+def _push_work(i0, i1, z, dt, arrays):
+    """Work of G over half a step."""
+    for i in range(i0, i1):
+        power = arrays.held[0, i] * arrays.u[i] + arrays.held[1, i] * arrays.v[i]
+        if z is not None:
+            power += arrays.held[2, i] * arrays.w[i]
+        arrays.contact_work[i] += 0.5 * dt * arrays.mass[i] * power
 
 
 @kernel
@@ -138,7 +169,6 @@ def _meet(
         least = min(
             least, walls.wall_force(i0, i1, z, planes, contact, damping, wall_slip, contact_heat, dt, cx, arrays)
         )
-    half_work(i0, i1, z, cx, None, None, dt, arrays, numbers)
     return least
 
 
@@ -224,24 +254,31 @@ def advance(
                 else:
                     a = split + (c - slow_chunks) * chunk
                     b = min(n, a + chunk)
+                met = np.inf
+                if begins and c >= slow_chunks:  # before its own forces, which set the acceleration anew
+                    met = _meet(
+                        a, b, z, shape, cx, contact, friction, damping, normals, by_normals, planes, wall_slip,
+                        contact_heat, last, arrays, numbers,
+                    )  # fmt: skip
                 own = step.force(
                     a, b, shape, z, h, mass, nearest, line, None, None, None, correction, bx, artificial, heat, None,
                     wave, None, None, None, None, None, None, None, plain, reference,
                     last if c < slow_chunks else fast_last, arrays, numbers,
                 )  # fmt: skip
                 if c < slow_chunks:
-                    slow_least = min(slow_least, own)
-                else:
-                    fast_least = min(fast_least, own)
-                if begins:
-                    slow_least = min(slow_least, _meet(
+                    met = _meet(
                         a, b, z, shape, cx, contact, friction, damping, normals, by_normals, planes, wall_slip,
                         contact_heat, last, arrays, numbers,
-                    ))  # fmt: skip
-                if begins and c >= slow_chunks:  # the lists are to hold for the whole outer step
-                    slow_least = min(
-                        slow_least, across.CLOSING * _reach_in_time(a, b, z, arrays) / numbers.step_factor
-                    )
+                    )  # fmt: skip
+                    half_work(a, b, z, cx, None, None, last, arrays, numbers)
+                    slow_least = min(slow_least, own, met)
+                else:
+                    _push_work(a, b, z, fast_last, arrays)
+                    fast_least = min(fast_least, own)
+                    slow_least = min(slow_least, met)
+                    if begins:  # the lists are to hold for the whole outer step
+                        reach = _reach_in_time(a, b, z, arrays)
+                        slow_least = min(slow_least, across.CLOSING * reach / numbers.step_factor)
                 c = from_chunk + claim(sync, taken)
             taken += chunks - from_chunk + threads
             arrays.reduced[thread, 2] = slow_least
@@ -279,12 +316,13 @@ def advance(
         # within an outer step inner ones only become shorter: it is to end on time
         parts = wanted if begins else max(wanted, parts - 1.0)
         small = rest if parts == 1.0 else rest / parts
-        duration = 0.5 * (fast_last + small)
+        _push(j0, j1, z, 0.5 * fast_last, arrays)
         if begins:
-            _impulse(j0, j1, z, 0.5 * (last + now) - duration, arrays)  # the rest of it is in the kick
-        kick(j0, j1, z, None, bx, None, duration, small, arrays, numbers)
+            _hold(j0, j1, z, 0.5 * last / now, arrays)
+        _push(j0, j1, z, 0.5 * small, arrays)
+        kick(j0, j1, z, None, bx, None, 0.5 * (fast_last + small), small, arrays, numbers)
+        _push_work(j0, j1, z, small, arrays)
         if begins:
-            half_work(j0, j1, z, cx, None, None, now, arrays, numbers)
             moved, broken = drift(i0, i1, z, None, None, None, None, 0.5 * shape.support, now, arrays, numbers)
         far, lost = drift(j0, j1, z, None, None, None, None, 0.5 * shape.support, small, arrays, numbers)
         moved = max(moved, far)

@@ -29,8 +29,8 @@ def is_mixed(p: Problem) -> bool:
     return len({b.density for b in p.bodies}) > 1 and not p.apart and not p.original
 
 
-def rows_of(p: Problem, contact: Contact, cures: Cures) -> Rows:
-    """The optional rows that a run has. cures: that apply, none where all bodies are total-Lagrangian."""
+def rows_of(p: Problem, contact: Contact, cures: Cures, *, local: bool) -> Rows:
+    """The optional rows that a run has. cures: that apply, none where all bodies are total-Lagrangian; local: steps."""
     return Rows(
         state=max(state_rows(b.law) for b in p.bodies),
         contact=p.apart or bool(p.walls),
@@ -48,6 +48,7 @@ def rows_of(p: Problem, contact: Contact, cures: Cures) -> Rows:
         normals=contact.normals is not None,
         wall_slip=contact.wall_slip,
         lagrangian=any(b.lagrangian for b in p.bodies),
+        local=local,
     )
 
 

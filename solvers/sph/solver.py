@@ -52,22 +52,21 @@ class Solver:
         self._plain = not all(b.lagrangian for b in problem.bodies)
         cures = self._cures = problem.cures if self._plain else Cures()
         self._walled = any(b.bearing for b in problem.bodies)
-        has = setup.rows_of(problem, self._contact, cures)
-        self._has = has
-        self._state = State(n, problem.dimension, has)
         self._images = ghosts.Images(np.zeros(0, np.int64), np.zeros((3, 0)), np.zeros((3, 0)))
         self._mirrors = None if problem.original else ghosts.mirrors(problem.planes)
+        self._numbers = setup.numbers_of(problem, self._contact, self._shape, mirrors=self._mirrors is not None)
+        self._stiff = local.classes(problem, self._numbers.wave, xsph=cures.xsph > 0.0)
+        self._inner = np.zeros(local.INNER)
+        self._slow = n if self._stiff is None else int(np.count_nonzero(~self._stiff[problem.body]))
+        has = self._has = setup.rows_of(problem, self._contact, cures, local=self._stiff is not None)
+        self._state = State(n, problem.dimension, has)
         self._mirrored = any(p.kind in (ghosts.SYMMETRY, ghosts.PERIODIC) for p in problem.planes)
         self._progress = np.zeros(step.PROGRESS)
         self._list = NeighbourList(n)
         self._others = NeighbourList(n)
         self._reduced = np.zeros((self.threads, 8))  # a cache line each
         self._laws = tuple(b.law for b in problem.bodies)
-        self._numbers = setup.numbers_of(problem, self._contact, self._shape, mirrors=self._mirrors is not None)
         setup.fill(self._state, problem, self._numbers, has, self._shape)
-        self._stiff = local.classes(problem, self._numbers.wave, xsph=has.xsph)
-        self._inner = np.zeros(local.INNER)
-        self._slow = n if self._stiff is None else int(np.count_nonzero(~self._stiff[problem.body]))
         self._spare = 0.5 * self._skin  # how far particles go before the next list
         self._reference = self._make_reference() if has.lagrangian else None
         self._rebuild()
@@ -356,8 +355,8 @@ class Solver:
         back = 0.0 if self.problem.original else 0.5 * float(self._progress[step.LAST])
         velocity = s.rows("u")[:, :n] + back * s.rows("a")[:, :n]
         if self._stiff is not None:
-            u, a, c = (s.rows(name)[:, self._slow : n] for name in ("u", "a", "c"))
-            velocity[:, self._slow :] = local.velocity(u, a, c, float(self._progress[step.LAST]), self._inner)
+            parts = [s.rows(name)[:, self._slow : n] for name in ("u", "a", "c", "held")]
+            velocity[:, self._slow :] = local.velocity(*parts, float(self._progress[step.LAST]), self._inner)
         for k in range(s.d):
             velocity[k, (s.fixed[:n] >> k) & 1 == 1] = 0.0
         return velocity

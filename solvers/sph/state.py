@@ -31,7 +31,8 @@ class Arrays(NamedTuple):
     contact_heat: energy that friction and dashpots of the contact took on a particle; slip: elastic slip, how far it
     slid, the load of friction (d + 2, m); wall_slip: the same for each wall; colour: normal to other bodies, mobilised:
     traction by normal force, (d, m) each (see `slip`). Of total-Lagrangian bodies: deformation (d*d): F - I;
-    hourglass: rows of `nominal`; nominal (d*d): V P M^-1 - kappa (F - I)/2.
+    hourglass: rows of `nominal`; nominal (d*d): V P M^-1 - kappa (F - I)/2. held (2 d, m): of
+    stiff bodies with local steps, see `local`.
     """
 
     x: Any
@@ -99,6 +100,7 @@ class Arrays(NamedTuple):
     deformation: Any
     hourglass: Any
     nominal: Any
+    held: Any
 
 
 class Numbers(NamedTuple):
@@ -157,7 +159,7 @@ class Rows:
 
     state: of the laws; the others say whether: contact, correction, artificial stress, pair viscosity (heat), density
     and stress diffusion, xsph, a changing h, a changing body force, a changing wave speed, heat of contact, slip
-    between bodies, normals; wall_slip: walls with friction; total-Lagrangian bodies.
+    between bodies, normals; wall_slip: walls with friction; total-Lagrangian bodies; local steps.
     """
 
     state: int = 0
@@ -176,6 +178,7 @@ class Rows:
     normals: bool = False
     wall_slip: int = 0
     lagrangian: bool = False
+    local: bool = False
 
 
 class State:
@@ -199,6 +202,7 @@ class State:
             "wave": int(has.wave), "b": d if has.artificial else 0, "contact_heat": int(has.contact_heat),
             "slip": (d + 2) * has.slip, "wall_slip": (d + 2) * has.wall_slip,
             "deformation": d * d if has.lagrangian else 0, "hourglass": HOURGLASS if has.lagrangian else 0,
+            "held": 2 * d * has.local,
             "state": has.state,
             "gradient": d * d, "s": (d * d if has.correction else 6 if solid else 3), "nearest": 1,
             "c": d if has.contact else 0, "correction": (6 if solid else 3) if has.correction else 0,
@@ -326,4 +330,5 @@ class State:
             deformation=self.rows("deformation"),
             hourglass=self.rows("hourglass"),
             nominal=self.rows("nominal"),
+            held=self.rows("held"),
         )
