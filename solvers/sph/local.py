@@ -8,9 +8,9 @@ own body. The slow ones are kicked as ever, F_n (H' + H)/2 with the H' before. T
 which is F in the middle of the step, extrapolated; what they have been given then lags behind the slow ones' by
 (F_n - F_n-1) H'/2, never more, and pair by pair: with that in the velocities (`velocity`), momentum is conserved to
 the last digits. The same F as one impulse at the beginning (Tuckerman, Berne & Martyna 1992) makes the surface of a
-steel plate ring, and its viscosity takes that energy, which the contact has made: 39 % of a soft block's kinetic energy
-where this makes 0.01 %. The phases and the invariant between steps are those of `step`; u of a stiff body stands half an
-inner step before.
+steel plate ring, and its viscosity takes that energy, which the contact has made: 39 % of a soft block's kinetic
+energy where this makes 0.01 %. The phases and the invariant between steps are those of `step`; u of a stiff body stands
+half an inner step before.
 
 Kernel contact cannot be split like this: the force on a particle of sand beside steel has the steel's stress in it,
 and is as stiff as the steel.
@@ -40,7 +40,8 @@ INNER = 3
 def classes(p: Problem, wave: Floats, *, xsph: bool) -> NDArray[np.bool_] | None:
     """(bodies,) which are stiff; None where all bodies take the same steps.
 
-    wave: (bodies,) speeds, zero of rigid ones, which never count. xsph: whether particles move with the mean velocity. ValueError where local steps are asked for and cannot be.
+    wave: (bodies,) speeds, zero of rigid ones, which never count. xsph: whether particles move with the mean velocity.
+    ValueError where local steps are asked for and cannot be.
     """
     if p.local_steps is False:
         return None
@@ -227,7 +228,19 @@ def advance(
                 taken += chunks - from_chunk + threads
                 barrier(sync, threads)
             torn = _laws(
-                j0, j1, z, laws, correction, density_rate, stress_rate, heat, wave, reference, fast_last, arrays, numbers
+                j0,
+                j1,
+                z,
+                laws,
+                correction,
+                density_rate,
+                stress_rate,
+                heat,
+                wave,
+                reference,
+                fast_last,
+                arrays,
+                numbers,
             )
             if begins:
                 torn = max(torn, _laws(

@@ -318,9 +318,9 @@ def critical_step(i0, i1, z, wave, numbers, arrays):
     all_fixed = (1 << numbers.dimension) - 1
     least = np.inf
     for i in range(i0, i1):
-        if (arrays.fixed[i] & all_fixed) == all_fixed:
-            if not numbers.held_limits or numbers.wall[arrays.material[i]] > 0.0:
-                continue
+        held = (arrays.fixed[i] & all_fixed) == all_fixed
+        if held and (not numbers.held_limits or numbers.wall[arrays.material[i]] > 0.0):
+            continue
         c = numbers.wave[arrays.material[i]]
         if wave is not None and c > 0.0:
             c = wave[i]

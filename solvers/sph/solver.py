@@ -168,106 +168,41 @@ class Solver:
         p, cures, has = self.problem, self._cures, self._has
         solid = p.dimension == 3
         images = self._images if self._mirrored else None
-        return int(
-            run(
-                step.advance,
-                self.threads,
-                self.live,
-                self.n,
-                self._shape,
-                True if solid else None,
-                a.z if solid else None,
-                None if self._uniform_h or not self._plain else a.h,
-                None if self._uniform_mass or not self._plain else a.mass,
-                a.nearest if p.step_option == 2 and self._plain else None,
-                True if p.dimension == 1 else None,
-                a.cx,
-                self._contact.law,
-                True if self._mixed else None,
-                a.correction if has.correction else None,
-                a.bx,
-                cures.artificial_stress if has.artificial else None,
-                a.h_list,
-                a.h_start,
-                a.density_rate,
-                a.stress_rate if has.stress_rate else None,
-                a.heat,
-                a.smoothed if has.xsph else None,
-                cures.xsph,
-                a.body_work,
-                a.wave,
-                True if self._walled else None,
-                None if images is None else images.source,
-                None if images is None else images.sign,
-                None if images is None else images.shift,
-                self._mirrors,
-                self._contact.friction,
-                self._contact.damping,
-                self._contact.normals,
-                self._contact.by_normals,
-                self._contact.walls,
-                a.wall_slip if has.wall_slip else None,
-                a.contact_heat,
-                True if self._plain else None,
-                self._reference,
-                a,
-                self._numbers,
-                self._laws,
-                self._progress,
-                float(until),
-                float(pause),
-                steps,
-                self._spare**2,
-            )[0]
-        )
+        found = run(
+            step.advance, self.threads, self.live, self.n, self._shape, True if solid else None,
+            a.z if solid else None, None if self._uniform_h or not self._plain else a.h,
+            None if self._uniform_mass or not self._plain else a.mass,
+            a.nearest if p.step_option == 2 and self._plain else None, True if p.dimension == 1 else None, a.cx,
+            self._contact.law, True if self._mixed else None, a.correction if has.correction else None, a.bx,
+            cures.artificial_stress if has.artificial else None, a.h_list, a.h_start, a.density_rate,
+            a.stress_rate if has.stress_rate else None, a.heat, a.smoothed if has.xsph else None, cures.xsph,
+            a.body_work, a.wave, True if self._walled else None, None if images is None else images.source,
+            None if images is None else images.sign, None if images is None else images.shift, self._mirrors,
+            self._contact.friction, self._contact.damping, self._contact.normals, self._contact.by_normals,
+            self._contact.walls, a.wall_slip if has.wall_slip else None, a.contact_heat,
+            True if self._plain else None, self._reference, a, self._numbers, self._laws, self._progress,
+            float(until), float(pause), steps, self._spare**2,
+        )  # fmt: skip
+        return int(found[0])
 
     def _run_local(self, until: float, steps: int, pause: float) -> int:
         """`_run_kernel` with local steps."""
         a = self._arrays()
         p, has, contact = self.problem, self._has, self._contact
         solid = p.dimension == 3
-        return int(
-            run(
-                local.advance,
-                self.threads,
-                self.n,
-                self._slow,
-                self._shape,
-                True if solid else None,
-                a.z if solid else None,
-                None if self._uniform_h or not self._plain else a.h,
-                None if self._uniform_mass or not self._plain else a.mass,
-                a.nearest if p.step_option == 2 and self._plain else None,
-                True if p.dimension == 1 else None,
-                a.cx,
-                contact.law,
-                a.correction if has.correction else None,
-                a.bx,
-                self._cures.artificial_stress if has.artificial else None,
-                a.density_rate,
-                a.stress_rate if has.stress_rate else None,
-                a.heat,
-                a.wave,
-                contact.friction,
-                contact.damping,
-                contact.normals,
-                contact.by_normals,
-                contact.walls,
-                a.wall_slip if has.wall_slip else None,
-                a.contact_heat,
-                True if self._plain else None,
-                self._reference,
-                a,
-                self._numbers,
-                self._laws,
-                self._progress,
-                self._inner,
-                float(until),
-                float(pause),
-                steps,
-                self._spare**2,
-            )[0]
-        )
+        found = run(
+            local.advance, self.threads, self.n, self._slow, self._shape, True if solid else None,
+            a.z if solid else None, None if self._uniform_h or not self._plain else a.h,
+            None if self._uniform_mass or not self._plain else a.mass,
+            a.nearest if p.step_option == 2 and self._plain else None, True if p.dimension == 1 else None, a.cx,
+            contact.law, a.correction if has.correction else None, a.bx,
+            self._cures.artificial_stress if has.artificial else None, a.density_rate,
+            a.stress_rate if has.stress_rate else None, a.heat, a.wave, contact.friction, contact.damping,
+            contact.normals, contact.by_normals, contact.walls, a.wall_slip if has.wall_slip else None,
+            a.contact_heat, True if self._plain else None, self._reference, a, self._numbers, self._laws,
+            self._progress, self._inner, float(until), float(pause), steps, self._spare**2,
+        )  # fmt: skip
+        return int(found[0])
 
     def _arrays(self) -> Arrays:
         return self._state.arrays(self._list, self._others, self._reduced)
@@ -355,8 +290,8 @@ class Solver:
         back = 0.0 if self.problem.original else 0.5 * float(self._progress[step.LAST])
         velocity = s.rows("u")[:, :n] + back * s.rows("a")[:, :n]
         if self._stiff is not None:
-            parts = [s.rows(name)[:, self._slow : n] for name in ("u", "a", "c", "held")]
-            velocity[:, self._slow :] = local.velocity(*parts, float(self._progress[step.LAST]), self._inner)
+            u, a, c, held = (s.rows(name)[:, self._slow : n] for name in ("u", "a", "c", "held"))
+            velocity[:, self._slow :] = local.velocity(u, a, c, held, float(self._progress[step.LAST]), self._inner)
         for k in range(s.d):
             velocity[k, (s.fixed[:n] >> k) & 1 == 1] = 0.0
         return velocity

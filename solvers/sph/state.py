@@ -113,7 +113,8 @@ class Numbers(NamedTuple):
     pair_viscosity: (bodies, 2) alpha and beta; density_diffusion, stress_diffusion: (bodies,)
     factors; wall: (bodies,) the density of one that is a wall, else 0; kinematic_viscosity:
     (bodies,) of fluids, else 0; inverse_w: 1/W at the particles' spacing;
-    held_limits: whether held particles limit the step too; least_distance: in h, that counts for the step: an image comes as near to its particle as that to the plane.
+    held_limits: whether held particles limit the step too;
+    least_distance: in h, that counts for the step: an image comes as near to its particle as that to the plane.
     """
 
     dimension: int
