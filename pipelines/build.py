@@ -94,6 +94,7 @@ def particle_problem(
         traced=tuple(control.history_particles),
         transducers=_transducers(control, numbers),
         cures=_cures(control, chosen),
+        local_steps=None if chosen.local_steps == "auto" else chosen.local_steps,
         **contact.options(control, chosen, len(bodies)),
     )
 

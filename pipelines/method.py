@@ -63,6 +63,7 @@ class Sph(Section):
     holds their hourglass modes, a share of Young's modulus. acceleration: rows of time and base acceleration in x, y,
     z, linear between them, in place of the deck's. laws: by the name of the deck's material, in place of the elastic
     one there. bearing: names of materials whose particles, all held, bear the stress of what leans on them.
+    local_steps: stiff bodies take several steps within one of the others; auto: where that goes and is worth while.
     """
 
     kernel: Literal["cubic", "quintic", "lucy", "gaussian", "wendland_c2", "wendland_c4"] = "cubic"
@@ -80,6 +81,7 @@ class Sph(Section):
     acceleration: Annotated[list[Row], Field(min_length=2)] | None = None
     laws: dict[str, Soil] = Field(default_factory=dict)
     bearing: list[str] = Field(default_factory=list)
+    local_steps: bool | Literal["auto"] = False
 
 
 def of_options(options: Mapping[str, Any]) -> Sph:

@@ -41,8 +41,8 @@ class Target:
     """What a step goes to.
 
     change: (n, 6) prescribed change of displacement; external: forces (n, 6) at a shape; inertia: forces (n, 6) that
-    grow with the change since the step's start, or None, their matrix (values of the structure), and the factor of the
-    static stiffness in the whole matrix.
+    grow with the change since the step's start, or None, their matrix (values of the structure), and the share that the
+    stresses' forces and stiffness have.
     """
 
     change: Floats
@@ -130,7 +130,7 @@ def _factor(assembly: Assembly, target: Target, *, definite: bool) -> bool:
 def _residual(
     assembly: Assembly, target: Target, shape: Shape, loads: Floats, internal: Floats, of_motion: Floats | None
 ) -> Floats:
-    out = loads - internal
+    out = loads - target.share * internal
     if target.inertia is not None:
         out = out - target.inertia(shape)
     if of_motion is not None:

@@ -315,12 +315,17 @@ DIFFUSION = 0.125  # of h^2 / nu: what viscosity may spread in a step (Morris, F
 def critical_step(i0, i1, z, wave, numbers, arrays):
     """The smallest stable step of a block by the deck's option.
 
-    1 h/(c+|v|), 2 nearest distance/(c+|v|), 0 by artificial viscosity; and by a fluid's own viscosity.
+    1 h/(c+|v|), 2 nearest distance/(c+|v|), 0 by artificial viscosity; and by a fluid's own viscosity. What does not
+    move limits nothing, unless its own law's stress pushes softer neighbours of another body.
     """
     option = numbers.step_option
     viscous = numbers.viscous
+    all_fixed = (1 << numbers.dimension) - 1
     least = np.inf
     for i in range(i0, i1):
+        held = (arrays.fixed[i] & all_fixed) == all_fixed
+        if held and (not numbers.held_limits or numbers.wall[arrays.material[i]] > 0.0):
+            continue
         c = numbers.wave[arrays.material[i]]
         if wave is not None and c > 0.0:
             c = wave[i]

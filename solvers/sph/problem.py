@@ -80,7 +80,8 @@ class Problem:
     contact_damping: fraction of a pair's critical damping, of contact and walls. friction: of bodies that repel;
     friction_between: of two bodies (indices) where that is another. walls: rigid planes. contact_by_normals: forces
     between bodies act along the normals of the contact: particles then slide over a coarse wall as over a smooth one
-    (their centres turn nothing exactly).
+    (their centres turn nothing exactly). local_steps: stiff bodies take several steps within one of the others
+    (`local`); None: where that goes and is worth while.
     """
 
     dimension: int
@@ -118,6 +119,7 @@ class Problem:
     friction_between: tuple[tuple[int, int, Coulomb], ...] = ()
     walls: tuple[Wall, ...] = ()
     contact_by_normals: bool = False
+    local_steps: bool | None = False
 
     def __post_init__(self) -> None:
         n = len(self.x)

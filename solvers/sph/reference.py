@@ -143,10 +143,10 @@ def place_images(p: Problem, s: State, shape: Any) -> ghosts.Images:
     return found
 
 
-def build(p: Problem, s: State, shape: Any, threads: int, images: int = 0) -> Reference:
+def build(p: Problem, s: State, shape: Any, threads: int, images: int = 0, *, by_cell: bool = True) -> Reference:
     """The reference configuration is that of the start; hourglass control begins with its full stiffness.
 
-    images: that stand behind the particles.
+    images: that stand behind the particles; by_cell: whether the particles stand in the order of the cells.
 
     ValueError where a particle's neighbours lie in a plane or a line and leave its deformation open.
     """
@@ -164,10 +164,12 @@ def build(p: Problem, s: State, shape: Any, threads: int, images: int = 0) -> Re
     uniform = bool(np.all(h[:n] == h[0]))
     reach = {"radius": radius if uniform else 0.5 * radius, "h": None if uniform else h * (0.5 * shape.support)}
     listed = NeighbourList(n)
-    if images:  # one body then, see `check`
-        listed.build_mapped(n, images, n, x, y, z, dummy=s.dummy, skin=0.0, threads=threads, **reach)
+    group = (
+        None if images else np.where(whole, s.material[:n], -1 - np.arange(n))
+    )  # others are nobody's neighbours here
+    if images or not by_cell:  # images are of one body, see `check`
+        listed.build_mapped(n, images, n, x, y, z, dummy=s.dummy, skin=0.0, group=group, threads=threads, **reach)
     else:
-        group = np.where(whole, s.material[:n], -1 - np.arange(n))  # others are nobody's neighbours here
         listed.build(
             Cells(n, x, y, z, radius), x, y, z, skin=0.0, group=group, other=False, threads=threads, dummy=s.dummy,
             **reach,

@@ -29,8 +29,8 @@ def is_mixed(p: Problem) -> bool:
     return len({b.density for b in p.bodies}) > 1 and not p.apart and not p.original
 
 
-def rows_of(p: Problem, contact: Contact, cures: Cures) -> Rows:
-    """The optional rows that a run has. cures: that apply, none where all bodies are total-Lagrangian."""
+def rows_of(p: Problem, contact: Contact, cures: Cures, *, local: bool) -> Rows:
+    """The optional rows that a run has. cures: that apply, none where all bodies are total-Lagrangian; local: steps."""
     return Rows(
         state=max(state_rows(b.law) for b in p.bodies),
         contact=p.apart or bool(p.walls),
@@ -48,6 +48,7 @@ def rows_of(p: Problem, contact: Contact, cures: Cures) -> Rows:
         normals=contact.normals is not None,
         wall_slip=contact.wall_slip,
         lagrangian=any(b.lagrangian for b in p.bodies),
+        local=local,
     )
 
 
@@ -75,6 +76,7 @@ def numbers_of(p: Problem, contact: Contact, shape: Shape, *, mirrors: bool) -> 
         pair_viscosity=np.array([(b.alpha, b.beta) for b in p.bodies]),
         density_diffusion=np.array([b.density_diffusion for b in p.bodies]),
         stress_diffusion=np.array([b.stress_diffusion for b in p.bodies]),
+        held_limits=_held_limits(p),
         least_distance=IMAGE if mirrors else 0.0,
         wall=np.array([b.density if b.bearing else 0.0 for b in p.bodies]),
         kinematic_viscosity=np.array([getattr(b.law, "viscosity", 0.0) / b.density for b in p.bodies]),
@@ -84,6 +86,13 @@ def numbers_of(p: Problem, contact: Contact, shape: Shape, *, mirrors: bool) -> 
         original=p.original,
         mixed=is_mixed(p),
     )
+
+
+def _held_limits(p: Problem) -> bool:
+    """Whether held particles limit the step: where their stress is felt by softer bodies, or nothing else is there."""
+    if p.original or p.fixed is None:
+        return True
+    return bool(np.all(p.fixed[:, : p.dimension])) or (len(p.bodies) > 1 and not p.apart)
 
 
 def _first_energy(p: Problem, body: int) -> float:

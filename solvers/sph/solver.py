@@ -19,7 +19,7 @@ from ..frame import Frame
 from ..materials import PLASTIC_STRAIN
 from ..neighbours import Cells, NeighbourList
 from ..threads import available, run
-from . import across, blame, ghosts, measures, probes, reference, setup, step
+from . import across, blame, ghosts, local, measures, probes, reference, setup, step
 from .contact import contact_of
 from .problem import Cures, Problem
 from .smoothing import shape_of
@@ -52,18 +52,20 @@ class Solver:
         self._plain = not all(b.lagrangian for b in problem.bodies)
         cures = self._cures = problem.cures if self._plain else Cures()
         self._walled = any(b.bearing for b in problem.bodies)
-        has = setup.rows_of(problem, self._contact, cures)
-        self._has = has
-        self._state = State(n, problem.dimension, has)
         self._images = ghosts.Images(np.zeros(0, np.int64), np.zeros((3, 0)), np.zeros((3, 0)))
         self._mirrors = None if problem.original else ghosts.mirrors(problem.planes)
+        self._numbers = setup.numbers_of(problem, self._contact, self._shape, mirrors=self._mirrors is not None)
+        self._stiff = local.classes(problem, self._numbers.wave, xsph=cures.xsph > 0.0)
+        self._inner = np.zeros(local.INNER)
+        self._slow = n if self._stiff is None else int(np.count_nonzero(~self._stiff[problem.body]))
+        has = self._has = setup.rows_of(problem, self._contact, cures, local=self._stiff is not None)
+        self._state = State(n, problem.dimension, has)
         self._mirrored = any(p.kind in (ghosts.SYMMETRY, ghosts.PERIODIC) for p in problem.planes)
         self._progress = np.zeros(step.PROGRESS)
         self._list = NeighbourList(n)
         self._others = NeighbourList(n)
         self._reduced = np.zeros((self.threads, 8))  # a cache line each
         self._laws = tuple(b.law for b in problem.bodies)
-        self._numbers = setup.numbers_of(problem, self._contact, self._shape, mirrors=self._mirrors is not None)
         setup.fill(self._state, problem, self._numbers, has, self._shape)
         self._spare = 0.5 * self._skin  # how far particles go before the next list
         self._reference = self._make_reference() if has.lagrangian else None
@@ -92,14 +94,27 @@ class Solver:
         x, y, z = (s.row("x_start", k) for k in range(3))
         assert x is not None
         assert y is not None
-        s.sort(Cells(self.n, x, y, z, self._shape.support * float(self.problem.h.max())).order, self.threads)
+        cells = Cells(self.n, x, y, z, self._shape.support * float(self.problem.h.max()))
+        s.sort(self._ordered(cells), self.threads)
         if self._mirrored:
             self._images = reference.place_images(self.problem, s, self._shape)
-        return reference.build(self.problem, s, self._shape, self.threads, len(self._images))
+        by_cell = self._stiff is None
+        return reference.build(self.problem, s, self._shape, self.threads, len(self._images), by_cell=by_cell)
+
+    def _ordered(self, cells: Cells) -> NDArray[np.int64]:
+        """The order of the cells; with local steps the slow bodies before the stiff ones."""
+        if self._stiff is None:
+            return cells.order
+        return local.in_front(cells.order, self._stiff[self._state.material[: cells.n]])
 
     def kernels(self) -> str:
         """What the loops were built for, for the log."""
-        return setup.described(self.problem, self._contact, self._cures, self._has, self.threads)
+        text = setup.described(self.problem, self._contact, self._cures, self._has, self.threads)
+        if self._stiff is None:
+            return text
+        names = ", ".join(b.name for b, stiff in zip(self.problem.bodies, self._stiff, strict=True) if stiff)
+        inner = self._progress[step.NEXT] / self._inner[local.FAST_NEXT]
+        return f"{text}, local steps: about {max(1, round(inner))} of {names} in one of the others"
 
     # the loop
 
@@ -150,62 +165,47 @@ class Solver:
                 raise made
 
     def _run_kernel(self, until: float, steps: int, pause: float = math.inf) -> int:
+        if self._stiff is not None:
+            return self._run_local(until, steps, pause)
         a = self._arrays()
         p, cures, has = self.problem, self._cures, self._has
         solid = p.dimension == 3
         images = self._images if self._mirrored else None
-        return int(
-            run(
-                step.advance,
-                self.threads,
-                self.live,
-                self.n,
-                self._shape,
-                True if solid else None,
-                a.z if solid else None,
-                None if self._uniform_h or not self._plain else a.h,
-                None if self._uniform_mass or not self._plain else a.mass,
-                a.nearest if p.step_option == 2 and self._plain else None,
-                True if p.dimension == 1 else None,
-                a.cx,
-                self._contact.law,
-                True if self._mixed else None,
-                a.correction if has.correction else None,
-                a.bx,
-                cures.artificial_stress if has.artificial else None,
-                a.h_list,
-                a.h_start,
-                a.density_rate,
-                a.stress_rate if has.stress_rate else None,
-                a.heat,
-                a.smoothed if has.xsph else None,
-                cures.xsph,
-                a.body_work,
-                a.wave,
-                True if self._walled else None,
-                None if images is None else images.source,
-                None if images is None else images.sign,
-                None if images is None else images.shift,
-                self._mirrors,
-                self._contact.friction,
-                self._contact.damping,
-                self._contact.normals,
-                self._contact.by_normals,
-                self._contact.walls,
-                a.wall_slip if has.wall_slip else None,
-                a.contact_heat,
-                True if self._plain else None,
-                self._reference,
-                a,
-                self._numbers,
-                self._laws,
-                self._progress,
-                float(until),
-                float(pause),
-                steps,
-                self._spare**2,
-            )[0]
-        )
+        found = run(
+            step.advance, self.threads, self.live, self.n, self._shape, True if solid else None,
+            a.z if solid else None, None if self._uniform_h or not self._plain else a.h,
+            None if self._uniform_mass or not self._plain else a.mass,
+            a.nearest if p.step_option == 2 and self._plain else None, True if p.dimension == 1 else None, a.cx,
+            self._contact.law, True if self._mixed else None, a.correction if has.correction else None, a.bx,
+            cures.artificial_stress if has.artificial else None, a.h_list, a.h_start, a.density_rate,
+            a.stress_rate if has.stress_rate else None, a.heat, a.smoothed if has.xsph else None, cures.xsph,
+            a.body_work, a.wave, True if self._walled else None, None if images is None else images.source,
+            None if images is None else images.sign, None if images is None else images.shift, self._mirrors,
+            self._contact.friction, self._contact.damping, self._contact.normals, self._contact.by_normals,
+            self._contact.walls, a.wall_slip if has.wall_slip else None, a.contact_heat,
+            True if self._plain else None, self._reference, a, self._numbers, self._laws, self._progress,
+            float(until), float(pause), steps, self._spare**2,
+        )  # fmt: skip
+        return int(found[0])
+
+    def _run_local(self, until: float, steps: int, pause: float) -> int:
+        """`_run_kernel` with local steps."""
+        a = self._arrays()
+        p, has, contact = self.problem, self._has, self._contact
+        solid = p.dimension == 3
+        found = run(
+            local.advance, self.threads, self.n, self._slow, self._shape, True if solid else None,
+            a.z if solid else None, None if self._uniform_h or not self._plain else a.h,
+            None if self._uniform_mass or not self._plain else a.mass,
+            a.nearest if p.step_option == 2 and self._plain else None, True if p.dimension == 1 else None, a.cx,
+            contact.law, a.correction if has.correction else None, a.bx,
+            self._cures.artificial_stress if has.artificial else None, a.density_rate,
+            a.stress_rate if has.stress_rate else None, a.heat, a.wave, contact.friction, contact.damping,
+            contact.normals, contact.by_normals, contact.walls, a.wall_slip if has.wall_slip else None,
+            a.contact_heat, True if self._plain else None, self._reference, a, self._numbers, self._laws,
+            self._progress, self._inner, float(until), float(pause), steps, self._spare**2,
+        )  # fmt: skip
+        return int(found[0])
 
     def _arrays(self) -> Arrays:
         return self._state.arrays(self._list, self._others, self._reduced)
@@ -234,7 +234,7 @@ class Solver:
         rows = s.rows("x_list")
         cells = Cells(n, rows[0], rows[1], rows[2] if s.d == 3 else None, radius + self._skin)
         if sort:
-            s.sort(cells.order, self.threads)
+            s.sort(self._ordered(cells), self.threads)
         if self._mirrored:
             self._make_images(radius + self._skin)
         x, y, z = s.row("x_list", 0), s.row("x_list", 1), s.row("x_list", 2)
@@ -249,7 +249,7 @@ class Solver:
         of_kernel = radius, h
         for neighbours, other in wanted:
             radius, h = self._contact.pairs(*of_kernel, self._shape.support) if other else of_kernel
-            if self._mirrored:
+            if self._mirrored or self._stiff is not None:
                 neighbours.build_mapped(
                     n, len(self._images), self.n, x, y, z, dummy=s.dummy, radius=radius, skin=self._skin, h=h,
                     group=group, other=other, threads=self.threads,
@@ -292,6 +292,9 @@ class Solver:
         s, n = self._state, self.n
         back = 0.0 if self.problem.original else 0.5 * float(self._progress[step.LAST])
         velocity = s.rows("u")[:, :n] + back * s.rows("a")[:, :n]
+        if self._stiff is not None:
+            u, a, c, held = (s.rows(name)[:, self._slow : n] for name in ("u", "a", "c", "held"))
+            velocity[:, self._slow :] = local.velocity(u, a, c, held, float(self._progress[step.LAST]), self._inner)
         for k in range(s.d):
             velocity[k, (s.fixed[:n] >> k) & 1 == 1] = 0.0
         return velocity
@@ -361,6 +364,7 @@ class Solver:
         data |= {"id": s.id[:n].copy(), "material": s.material[:n].copy(), "fixed": s.fixed[:n].copy()}
         return data | {
             "progress": self._progress.copy(),
+            "inner": self._inner.copy(),
             "start_energy": np.array(list(self._start_energy.values())),
             "time": self.time,
             "step": self.step,
@@ -378,6 +382,7 @@ class Solver:
             getattr(s, name)[:n] = data[name]
         self.live = int(data["live"])
         self._progress[:] = data["progress"]
+        self._inner[:] = data.get("inner", 0.0)  # of before there were local steps
         if self.problem.body_curve is not None:
             step.body_force_at(self._progress[step.TIME], self._numbers)
         self._start_energy = dict(zip(self._start_energy, np.asarray(data["start_energy"]).tolist(), strict=True))

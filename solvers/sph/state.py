@@ -31,7 +31,8 @@ class Arrays(NamedTuple):
     contact_heat: energy that friction and dashpots of the contact took on a particle; slip: elastic slip, how far it
     slid, the load of friction (d + 2, m); wall_slip: the same for each wall; colour: normal to other bodies, mobilised:
     traction by normal force, (d, m) each (see `slip`). Of total-Lagrangian bodies: deformation (d*d): F - I;
-    hourglass: rows of `nominal`; nominal (d*d): V P M^-1 - kappa (F - I)/2.
+    hourglass: rows of `nominal`; nominal (d*d): V P M^-1 - kappa (F - I)/2. held (2 d, m): of
+    stiff bodies with local steps, see `local`.
     """
 
     x: Any
@@ -99,6 +100,7 @@ class Arrays(NamedTuple):
     deformation: Any
     hourglass: Any
     nominal: Any
+    held: Any
 
 
 class Numbers(NamedTuple):
@@ -111,6 +113,7 @@ class Numbers(NamedTuple):
     pair_viscosity: (bodies, 2) alpha and beta; density_diffusion, stress_diffusion: (bodies,)
     factors; wall: (bodies,) the density of one that is a wall, else 0; kinematic_viscosity:
     (bodies,) of fluids, else 0; inverse_w: 1/W at the particles' spacing;
+    held_limits: whether held particles limit the step too;
     least_distance: in h, that counts for the step: an image comes as near to its particle as that to the plane.
     """
 
@@ -132,6 +135,7 @@ class Numbers(NamedTuple):
     wall: Any
     kinematic_viscosity: Any
     inverse_w: float
+    held_limits: bool
     least_distance: float
     step_option: int
     step_factor: float
@@ -156,7 +160,7 @@ class Rows:
 
     state: of the laws; the others say whether: contact, correction, artificial stress, pair viscosity (heat), density
     and stress diffusion, xsph, a changing h, a changing body force, a changing wave speed, heat of contact, slip
-    between bodies, normals; wall_slip: walls with friction; total-Lagrangian bodies.
+    between bodies, normals; wall_slip: walls with friction; total-Lagrangian bodies; local steps.
     """
 
     state: int = 0
@@ -175,6 +179,7 @@ class Rows:
     normals: bool = False
     wall_slip: int = 0
     lagrangian: bool = False
+    local: bool = False
 
 
 class State:
@@ -198,6 +203,7 @@ class State:
             "wave": int(has.wave), "b": d if has.artificial else 0, "contact_heat": int(has.contact_heat),
             "slip": (d + 2) * has.slip, "wall_slip": (d + 2) * has.wall_slip,
             "deformation": d * d if has.lagrangian else 0, "hourglass": HOURGLASS if has.lagrangian else 0,
+            "held": 2 * d * has.local,
             "state": has.state,
             "gradient": d * d, "s": (d * d if has.correction else 6 if solid else 3), "nearest": 1,
             "c": d if has.contact else 0, "correction": (6 if solid else 3) if has.correction else 0,
@@ -325,4 +331,5 @@ class State:
             deformation=self.rows("deformation"),
             hourglass=self.rows("hourglass"),
             nominal=self.rows("nominal"),
+            held=self.rows("held"),
         )

@@ -222,6 +222,12 @@ def test_a_soil_takes_the_moduli_of_the_deck_and_a_wall_is_held(tmp_path: Path) 
     ]  # fmt: skip
 
 
+@pytest.mark.parametrize(("said", "given"), [(True, True), (False, False), ("auto", None)])
+def test_local_steps(tmp_path: Path, said: object, given: bool | None) -> None:
+    problem = particle_problem(_read(tmp_path), "deck.mcm", method=of_options({"sph.local_steps": said}))
+    assert problem.local_steps is given
+
+
 def test_all_refusals_are_said_and_a_mesh_is_no_deck(tmp_path: Path) -> None:
     model = _read(tmp_path, ("   60\n\n", "   60\n    1    0    0\n"), ("      0.33", "      0.55"), ("", BIRTH))
     with pytest.raises(InputError) as caught:

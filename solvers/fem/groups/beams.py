@@ -84,7 +84,7 @@ class BeamGroup:
                               [half, (4.0 + soft) * length**2, -half, (2.0 - soft) * length**2],
                               [-12.0 + 0 * half, -half, 12.0 + 0 * half, -half],
                               [half, (2.0 - soft) * length**2, -half, (4.0 + soft) * length**2]])  # fmt: skip
-            k[np.ix_(np.arange(e), rows, rows)] = (c * block).transpose(2, 0, 1)
+            k[np.ix_(range(e), rows, rows)] = (c * block).transpose(2, 0, 1)
         return k
 
     def bind(self, structure: Structure) -> None:
@@ -126,8 +126,9 @@ class BeamGroup:
             rows = [v, turn, v + 6, turn + 6]
             s, one = sign * length, np.ones(e)
             block = np.array([[156 * one, 22 * s, 54 * one, -13 * s], [22 * s, 4 * s**2, 13 * s, -3 * s**2],
-                              [54 * one, 13 * s, 156 * one, -22 * s], [-13 * s, -3 * s**2, -22 * s, 4 * s**2]])  # fmt: skip
-            m[np.ix_(np.arange(e), rows, rows)] = (mass / 420.0 * block).transpose(2, 0, 1)
+                              [54 * one, 13 * s, 156 * one, -22 * s],
+                              [-13 * s, -3 * s**2, -22 * s, 4 * s**2]])  # fmt: skip
+            m[np.ix_(range(e), rows, rows)] = (mass / 420.0 * block).transpose(2, 0, 1)
         m = np.einsum("epi,epq,eqj->eij", self._big, m, self._big)
         return np.ascontiguousarray(m.reshape(-1, 2, 6, 2, 6).transpose(0, 2, 4, 1, 3))
 

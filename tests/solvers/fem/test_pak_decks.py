@@ -53,16 +53,16 @@ def test_displacements_are_near_paks_where_the_elements_differ(shared: Path, dec
 
 @pytest.mark.parametrize("deck", ["hex1", "hex_grav", "bar5", "cant_std"])
 def test_stresses_at_gauss_points_are_paks(shared: Path, deck: str) -> None:
-    """Its elements' axes r, s, t are ours turned about t by 180 degrees."""
+    """Its elements' axes r, s, t are ours turned about t by 180 degrees: yz and zx change their signs."""
     solver = _solved(shared / f"reference/pak/{deck}.dat")
     rows = np.loadtxt(shared / f"reference/pak/results/{deck}_stress.csv", delimiter=",", skiprows=1)
     group = solver.assembly.groups[0]
     ours = group.stress.reshape(len(group.elements.ids), 2, 2, 2, 6)  # type: ignore[attr-defined]  # t, s, r
     element = np.searchsorted(group.elements.ids, rows[:, 0].astype(int))
     r, s, t = (rows[:, k].astype(int) - 1 for k in (1, 2, 3))
-    found = ours[element, t, 1 - s, 1 - r]
-    size = np.abs(rows[:, 4:10]).max()
-    np.testing.assert_allclose(found, rows[:, 4:10], atol=1e-4 * size)
+    found = ours[element, t, 1 - s, 1 - r] * np.array([1, 1, 1, 1, -1, -1])
+    size = np.abs(rows[:, 4:10]).max()  # printed with four digits
+    np.testing.assert_allclose(found, rows[:, 4:10], atol=1.5e-4 * size)
 
 
 def test_paks_real_decks_run(shared: Path) -> None:
