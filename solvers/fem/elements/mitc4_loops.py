@@ -21,8 +21,8 @@ from .mitc4 import (
     tied_weights,
     to_local,
 )
-from .mitc4_geometry import bending_geometry, tied_geometry
 from .shapes import functions, table
+from .shell_geometry import bending_geometry, tied_geometry
 
 
 @kernel

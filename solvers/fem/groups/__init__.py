@@ -33,7 +33,7 @@ def make_groups(problem: Problem) -> list[Group]:
     normals = dict(zip(shells, directors(problem.x, corners, problem.fixed), strict=True)) if shells else {}
     groups: list[Group] = []
     for k, e in enumerate(problem.elements):
-        if e.family == "shell" and e.kind == "quad4":
+        if e.family == "shell" and e.kind in ("tri3", "quad4"):
             groups.append(ShellGroup(e, problem.x, normals[k]))
         elif e.family in _CLASSES:
             groups.append(_CLASSES[e.family](e, problem.x))

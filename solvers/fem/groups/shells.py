@@ -1,12 +1,15 @@
-"""Shells of four nodes with their points in the plane and through the thickness."""
+"""Shells of three and four nodes with their points in the plane and through the thickness."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...materials import PLASTIC_STRAIN, state_rows
-from ..elements import mitc4_loops as mitc4
+from ..elements import mitc3_loops, mitc4_loops
+from ..elements.mitc3 import MODES
 from ..elements.points import advance_plane_stress, elastic_modulus
 from ..elements.shapes import table
 from ..problem import SMALL, Elements
@@ -20,28 +23,29 @@ _DOUBLED = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
 
 
 class ShellGroup:
-    """A group of four-node shells; see `group.Group`."""
+    """A group of three- or four-node shells; see `group.Group`."""
 
     def __init__(self, elements: Elements, x: Floats, directors: Floats) -> None:
         self.elements = elements
         self.x = np.ascontiguousarray(x, dtype=float)
         self.nodes = np.ascontiguousarray(elements.nodes, dtype=np.int64)
         self.dofs = np.arange(6)
-        e = len(self.nodes)
+        e, k = self.nodes.shape
+        self._loops: Any = mitc4_loops if k == 4 else mitc3_loops
         thickness = np.zeros(e) if elements.thickness is None else np.asarray(elements.thickness, dtype=float)
-        self.thickness = thickness if thickness.ndim == 2 else np.repeat(thickness[:, None], 4, axis=1)
+        self.thickness = thickness if thickness.ndim == 2 else np.repeat(thickness[:, None], k, axis=1)
         if not (self.thickness > 0.0).all():
             raise Bad(int(elements.ids[int(np.argmin(self.thickness.min(axis=1)))]), "its thickness is not positive")
         self._half = np.ascontiguousarray(0.5 * self.thickness)
         self.directors = np.ascontiguousarray(directors)
-        plane = table("quad4", elements.gauss[:2])
+        plane = table("quad4", elements.gauss[:2]) if k == 4 else table("tri6", full=True)
         self._points, self._weights = np.ascontiguousarray(plane.points), plane.weights
         layers = table("line2", (elements.layers,))
         self._layers, self._layer_weights = np.ascontiguousarray(layers.points[:, 0]), layers.weights
         self._root = float(np.sqrt(elements.shear_factor))
         self._finite = None if elements.geometry == SMALL else True
-        self.modes: int | None = elements.modes or None
-        modes = elements.modes
+        modes = elements.modes if k == 4 else MODES  # a triangle's are its bubble
+        self.modes: int | None = modes or None
         m = e * len(self._weights) * len(self._layers)
         rows = max(1, state_rows(elements.law))
         self.stress, self.trial = np.zeros((m, 6)), np.zeros((m, 6))
@@ -50,17 +54,17 @@ class ShellGroup:
         self.energy, self.dissipated, self._work = np.zeros(m), np.zeros(m), np.zeros(m)
         self.alpha, self._alpha = np.zeros((e, modes)), np.zeros((e, modes))
         self._base, self._rest = np.zeros((e, modes)), np.zeros((e, modes))
-        self._answer = np.zeros((e, modes, 6, 4))
+        self._answer = np.zeros((e, modes, 6, k))
         self._assembled: Floats | None = None
         some = min(CHUNK, e)
-        self._matrix, self._forces = np.empty((some, 6, 6, 4, 4)), np.empty((some, 6, 4))
+        self._matrix, self._forces = np.empty((some, 6, 6, k, k)), np.empty((some, 6, k))
         self._modulus = np.empty((some * (m // e), 6, 6))
         self._scratch, self._kept = np.empty((rows, 2)), np.empty(rows)
         self._drill = DRILL * elastic_modulus(elements.law)[1] * self.thickness.mean(axis=1)
         self._offsets = np.empty(0, np.int32)
         self._still = np.broadcast_to(np.eye(3), (len(x), 3, 3))
         self.point_volume = np.empty(m)
-        mitc4.volumes(self.nodes, self.x, self.directors, self._half, self._points, self._weights, self._layers,
+        self._loops.volumes(self.nodes, self.x, self.directors, self._half, self._points, self._weights, self._layers,
                       self._layer_weights, self.point_volume)  # fmt: skip
         self.volume = self.point_volume.reshape(e, -1).sum(axis=1)
         if not (self.point_volume > 0.0).all():
@@ -100,7 +104,7 @@ class ShellGroup:
         some = self.modes is not None
         alpha = (self._alpha[lo:hi], self.alpha[lo:hi]) if some else (None, None)
         strain = self._step[rows]
-        mitc4.strains(
+        self._loops.strains(
             *shell, before, turn, self.directors[lo:hi], self._half[lo:hi], self._points, self._layers, self._root,
             self._finite, self.modes, *alpha, self.strain[rows], strain, convex,
         )  # fmt: skip
@@ -111,7 +115,7 @@ class ShellGroup:
                              self._work[rows], self._scratch, modulus, self._kept)  # fmt: skip
         forces, matrix = self._forces[: hi - lo], self._matrix[: hi - lo] if sink.stiff else None
         answer, rest = (self._answer[lo:hi], self._rest[lo:hi]) if some else (None, None)
-        mitc4.integrate(
+        self._loops.integrate(
             *shell, turn, self.directors[lo:hi], self._half[lo:hi], self._points, self._weights, self._layers,
             self._layer_weights, self._root, self._drill[lo:hi], self._finite, self.modes, self.trial[rows], modulus,
             matrix, forces, answer, rest,
@@ -133,7 +137,7 @@ class ShellGroup:
 
     def mass(self, sink: Sink, *, lumped: Floats | None = None) -> None:
         e = len(self.nodes)
-        own = self.elements.density * mitc4.areas(self.nodes, self.x) * self.thickness[:, None, :]
+        own = self.elements.density * self._loops.areas(self.nodes, self.x) * self.thickness[:, None, :]
         h = self.thickness.mean(axis=1)[:, None]
         if lumped is not None:
             row = own.sum(axis=1)
@@ -143,16 +147,17 @@ class ShellGroup:
             return
         for lo in range(0, e, CHUNK):
             hi = min(lo + CHUNK, e)
-            full = np.zeros((hi - lo, 6, 6, 4, 4))
+            k = self.nodes.shape[1]
+            full = np.zeros((hi - lo, 6, 6, k, k))
             part = 0.5 * (own[lo:hi] + own[lo:hi].transpose(0, 2, 1))
             inertia = part * (h[lo:hi] ** 2 / 12.0)[:, :, None]
             for c in range(3):
                 full[:, c, c] = part
                 full[:, 3 + c, 3 + c] = inertia
-            sink.add(self.nodes[lo:hi], self.dofs, self._offsets[lo:hi], np.zeros((hi - lo, 6, 4)), full)
+            sink.add(self.nodes[lo:hi], self.dofs, self._offsets[lo:hi], np.zeros((hi - lo, 6, k)), full)
 
     def weights(self) -> Floats:
-        own = self.elements.density * mitc4.areas(self.nodes, self.x) * self.thickness[:, None, :]
+        own = self.elements.density * self._loops.areas(self.nodes, self.x) * self.thickness[:, None, :]
         total = np.zeros(len(self.x))
         np.add.at(total, self.nodes, own.sum(axis=2))
         return np.repeat(total[:, None], 3, axis=1)
@@ -162,7 +167,7 @@ class ShellGroup:
     def _global(self) -> Floats:
         """Stresses (e, 4, layers, 6) in global axes, of the shape now."""
         turn = self.last.turn
-        frames = mitc4.frames(self.nodes, self.x, self.directors, self._half, self._points)
+        frames = self._loops.frames(self.nodes, self.x, self.directors, self._half, self._points)
         if turn is not None:
             mean = turn[self.nodes].mean(axis=1)
             frames = np.einsum("eij,egaj->egai", mean, frames)
@@ -193,7 +198,7 @@ class ShellGroup:
         return cells
 
     def at_nodes(self) -> tuple[Floats, Floats]:
-        matrix = mitc4.extrapolation(self._points)
+        matrix = self._loops.extrapolation(self._points)
         stress = np.einsum("kg,l,eglc->ekc", matrix, self._faces()[1], self._global())
         return stress, self.volume
 
