@@ -27,7 +27,8 @@ class Fem(Section):
 
     solver: of the linear systems (auto: the best that is installed); enhanced: incompatible modes of hexahedra,
     quadrilaterals and four-node shells; dilatation: the mean of an element, against locking in plastic flow; geometry:
-    of all groups; iteration: newton or modified; search: line search; tolerance: residual force over the largest
+    of all groups; iteration: newton factors in each iteration, adaptive where the last one was slow, modified once a
+    step; search: line search; tolerance: residual force over the largest
     force; most: iterations of a step; cuts: how often a step is halved; steps: number of equal steps to the deck's end.
     """
 
@@ -35,7 +36,7 @@ class Fem(Section):
     enhanced: Literal["deck", "all", "none"] = "deck"
     dilatation: Literal["auto", "mean", "plain"] = "auto"
     geometry: Literal["deck", "small", "total", "updated"] = "deck"
-    iteration: Literal["newton", "modified"] = "newton"
+    iteration: Literal["adaptive", "newton", "modified"] = "adaptive"
     search: bool | None = None
     tolerance: Positive | None = None
     most: Count | None = None

@@ -16,7 +16,9 @@ from .shape import Shape
 
 Floats = NDArray[np.float64]
 SEARCHED = 0.8  # line search is done where the work along the step stays above this share
-SLACK = 1e-13  # of the forces: less is round-off
+SLACK = 1e-13  # of the largest forces on the way: less is round-off
+LEAST = 1e-6  # of the same: what the forces at the end are taken to be at least, as where a structure only turns
+FAST = 0.1  # an iteration that leaves less of the residual than this needs no new factors
 
 
 class NotConverged(ArithmeticError):
@@ -54,31 +56,34 @@ class Target:
 
 def equilibrium(
     assembly: Assembly, start: Shape, target: Target, dt: float, how: Iteration, *, definite: bool = True,
-    keep: bool = False,
+    keep: bool = False, guess: Floats | None = None,
 ) -> tuple[Shape, Floats, Trace]:  # fmt: skip
     """The shape in equilibrium, the internal forces (n, 6) and how the iterations went. Raises NotConverged.
 
-    keep: the factors that there are hold, of a linear structure and an equal step.
+    keep: the factors that there are hold, of a linear structure and an equal step; guess: (n, 6) a change to begin
+    with, prescribed motion included, in place of the answer to the stiffness at the start.
     """
     trace = Trace()
-    shape = start
-    prescribed = target.change
-    moved = prescribed if prescribed.any() else None
-    first_energy = 0.0
+    shape = start if guess is None else start.moved(guess)
+    moved = target.change if guess is None and target.change.any() else None
+    stale = not keep  # whether the factors are to be made anew
     loads = target.external(shape)
-    stiff = not keep or moved is not None
+    stiff = guess is None and (stale or moved is not None)
     internal, of_motion = _evaluate(assembly, shape, start, dt, stiff=stiff, moved=moved)
     residual = _residual(assembly, target, shape, loads, internal, of_motion)
-    scale = max(_size(loads), _size(of_motion), _size(internal))
+    largest = max(_size(loads), _size(of_motion), _size(internal))
+    if guess is not None:
+        stale = not assembly.system.factored or _share(residual, loads, internal, largest) > FAST
+    first_energy, before = 0.0, math.inf
     for iteration in range(how.most):
-        if not keep and (iteration == 0 or how.method == "newton"):
-            if iteration:
-                internal, _ = _evaluate(assembly, shape, start, dt, stiff=True, moved=None)
+        if stale:
+            if iteration or guess is not None:
+                _evaluate(assembly, shape, start, dt, stiff=True, moved=None)
             definite = _factor(assembly, target, definite=definite)
             trace.factorisations += 1
         step = assembly.expand(assembly.solve(residual))
         if iteration == 0 and moved is not None:
-            step = step + prescribed
+            step = step + target.change
         along = float(residual @ assembly.gather(step)) if iteration else 0.0
         trial = shape.moved(step)
         loads = target.external(trial)
@@ -88,22 +93,32 @@ def equilibrium(
             trial, loads, internal, left = _searched(
                 assembly, target, shape, start, step, dt, left, along, (trial, loads, internal)
             )
-        scale = max(scale, _size(loads), _size(internal))
+        largest = max(largest, _size(loads), _size(internal))
         energy = abs(float(residual @ assembly.gather(step)))
         if iteration == 0:
             first_energy = max(energy, _energy(loads, step))
         shape, residual = trial, left
-        size = float(np.abs(residual).max(initial=0.0)) / scale if scale else 0.0
+        size = _share(residual, loads, internal, largest)
         trace.residuals.append(size)
         if not math.isfinite(size):
             raise NotConverged("the forces are not finite")
-        if _converged(how, size, energy, first_energy, step, shape, start):
+        round_off = float(np.abs(residual).max(initial=0.0)) <= SLACK * largest
+        if round_off or _converged(how, size, energy, first_energy, step, shape, start):
             return shape, internal, trace
+        slow = size > FAST * before
+        stale = not keep and (how.method == "newton" or (how.method == "adaptive" and slow))
+        before = size
     worst = divmod(int(assembly.where[int(np.argmax(np.abs(residual)))]), 6) if assembly.transform is None else None
     raise NotConverged(
         f"no equilibrium after {how.most} iterations: the residual force is {trace.residuals[-1]:.1e} of the loads",
         worst,
     )
+
+
+def _share(residual: Floats, loads: Floats, internal: Floats, largest: float) -> float:
+    """The residual force over the forces now; these are taken to be LEAST of the largest on the way at least."""
+    scale = max(_size(loads), _size(internal), LEAST * largest)
+    return float(np.abs(residual).max(initial=0.0)) / scale if scale else 0.0
 
 
 def _evaluate(
@@ -162,8 +177,6 @@ def _searched(
 def _converged(
     how: Iteration, size: float, energy: float, first_energy: float, step: Floats, shape: Shape, start: Shape
 ) -> bool:
-    if size <= SLACK:
-        return True
     if how.energy and energy > how.energy * first_energy:
         return False
     if how.displacement:

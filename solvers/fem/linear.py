@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 log = logging.getLogger("zrno")
 RESIDUAL = 1e-3  # relative to the load, after refinement: above it the system is singular to working precision
 POOR = 1e-6  # above it the log says so: the softest motions are only so exact
-REFINED = 1e-11  # residuals above it are refined
+REFINED = 1e-9  # residuals above it are refined
 REFINEMENTS = 3
 
 
@@ -176,6 +176,7 @@ class _Pardiso:
         self._starts, self._columns = system._starts, system._columns
         self._n = system.n
         self._values = system.values
+        self._order = np.zeros(1, np.int32)
         empty = np.zeros(1)
         self._run(11, empty, empty)
 
@@ -202,7 +203,7 @@ class _Pardiso:
         self._call_library(
             self._handle.ctypes.data_as(ctypes.POINTER(ctypes.c_int64)), number(1), number(1), number(self._type),
             number(phase), number(self._n), self._values.ctypes.data_as(ctypes.c_void_p), pointer(self._starts),
-            pointer(self._columns), pointer(np.zeros(1, np.int32)), number(many), pointer(self._options), number(0),
+            pointer(self._columns), pointer(self._order), number(many), pointer(self._options), number(0),
             right.ctypes.data_as(ctypes.c_void_p), x.ctypes.data_as(ctypes.c_void_p), ctypes.byref(error),
         )  # fmt: skip
         if error.value == -4:

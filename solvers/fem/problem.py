@@ -146,12 +146,13 @@ class Path:
 class Iteration:
     """How equilibrium is found.
 
-    method: "newton" (full) or "modified" (stiffness of the step's start); search: line search; most: iterations;
+    method: "newton" (factors in each iteration), "adaptive" (where the last one did not leave less than a tenth of the
+    residual) or "modified" (of the step's start alone); search: line search; most: iterations;
     energy, force, displacement: relative tolerances, 0 not asked; cuts: how often a step is halved that does not
     converge.
     """
 
-    method: str = "newton"
+    method: str = "adaptive"
     search: bool = False
     most: int = 20
     energy: float = 0.0

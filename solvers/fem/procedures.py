@@ -136,6 +136,7 @@ class Increments(Still):
     def __init__(self, solver: Solver) -> None:
         self.mover: Integrator | None = None
         self._kept = 0.0  # the step whose factors are there, of a linear structure
+        self._before: tuple[Floats, Floats, float] | None = None  # the last change, what of it was prescribed, its step
         p = solver.problem
         self.name = f"{'linear' if solver.linear else f'nonlinear ({p.iteration.method})'} static"
         if p.dynamics is not None:
@@ -170,9 +171,17 @@ class Increments(Still):
             target = mover.target(solver.shape, change * mover.theta, lambda s: solver.loads.at(reach, s.u),
                                   mover.theta * dt)  # fmt: skip
         keep = solver.linear and math.isclose(self._kept, dt, rel_tol=1e-9)
-        shape, internal, trace = equilibrium(solver.assembly, solver.shape, target, dt, solver.problem.iteration,
-                                             keep=keep)  # fmt: skip
+        guess = self._guess(change, dt)
+        how = solver.problem.iteration
+        try:
+            shape, internal, trace = equilibrium(solver.assembly, solver.shape, target, dt, how, keep=keep, guess=guess)
+        except NotConverged:
+            self._before = None
+            if guess is None:
+                raise
+            shape, internal, trace = equilibrium(solver.assembly, solver.shape, target, dt, how, keep=keep)
         self._kept = dt if solver.linear else 0.0
+        self._before = (shape.u - solver.shape.u, change, dt)
         solver.iterations += len(trace.residuals)
         log.debug("t = %g: residuals %s", until, " ".join(f"{r:.1e}" for r in trace.residuals))
         if mover is None:
@@ -186,6 +195,16 @@ class Increments(Still):
         if mover.theta == 1.0:
             mover.finish(shape.u - solver.shape.u, external - internal, dt)
         solver.accept(shape, external, internal, mover.inertia(mover.acceleration), mover.damping(mover.velocity))
+
+    def _guess(self, change: Floats, dt: float) -> Floats | None:
+        """The last step's change once more, where the motion that is prescribed goes on as it went; None elsewhere."""
+        if self._before is None or self.mover is not None:
+            return None
+        last, prescribed, before = self._before
+        share = dt / before
+        if not np.allclose(change, share * prescribed, rtol=1e-9, atol=1e-12 * float(np.abs(change).max(initial=0.0))):
+            return None
+        return share * last
 
     def velocity(self, solver: Solver) -> Floats | None:
         return None if self.mover is None else self.mover.velocity

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...materials import PLASTIC_STRAIN, state_rows
-from ..elements import continuum, shapes
+from ..elements import continuum, hex8, shapes
 from ..elements import continuum_loops as loops
 from ..elements.points import advance, advance_plane_stress
 from ..problem import SMALL, UPDATED, Elements
@@ -58,6 +58,7 @@ class ContinuumGroup:
         self._modulus = np.empty((some * points, 6, 6))
         self._scratch, self._kept = np.empty((self.rows, 2)), np.empty(self.rows)
         self.small = elements.geometry == SMALL
+        self._plain = self.small and elements.kind == "hex8" and not elements.mean and not modes
         self._finite = None if elements.geometry in (SMALL, UPDATED) else True
         self.volume = np.zeros(e)
         self.point_volume = np.zeros(m)
@@ -101,10 +102,13 @@ class ContinuumGroup:
         smallest = np.empty(hi - lo)
         alpha = (self._alpha[lo:hi], self.alpha[lo:hi]) if self.modes is not None else (None, None)
         strain = self._strain_step[rows]
-        loops.strains(
-            nodes, middle, u, before, self._values, self._slopes, t.weights, t.points, self._centre, self.plane,
-            self._finite, mean, self.modes, *alpha, strain, smallest,
-        )  # fmt: skip
+        if self._plain:
+            hex8.strains(nodes, middle, u, before, self._slopes, strain, smallest)
+        else:
+            loops.strains(
+                nodes, middle, u, before, self._values, self._slopes, t.weights, t.points, self._centre, self.plane,
+                self._finite, mean, self.modes, *alpha, strain, smallest,
+            )  # fmt: skip
         if not (smallest > 0.0).all():
             raise Bad(int(el.ids[lo + int(np.argmin(smallest))]), "its volume is not positive")
         if el.geometry == UPDATED:
@@ -118,6 +122,10 @@ class ContinuumGroup:
             advance(el.law, strain, old, self.trial[rows], self._history, lo * g, el.density, dt, self._work[rows],
                     self._scratch, modulus if sink.stiff else None)  # fmt: skip
         forces, matrix = self._forces[: hi - lo], self._matrix[: hi - lo] if sink.stiff else None
+        if self._plain:
+            hex8.integrate(nodes, places, self._slopes, t.weights, self.trial[rows], modulus, matrix, forces)
+            sink.add(nodes, self.dofs, self._offsets[lo:hi], forces, matrix)
+            return
         answer, rest = (self._answer[lo:hi], self._rest[lo:hi]) if self.modes is not None else (None, None)
         loops.integrate(
             nodes, places, u, self._values, self._slopes, t.weights, t.points, self._centre, self.plane,
