@@ -7,10 +7,12 @@ and each solution's residual is checked.
 from __future__ import annotations
 
 import ctypes
+import functools
 import importlib.util
 import logging
 import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
@@ -151,17 +153,27 @@ def chosen(method: str, n: int) -> str:
 SMALL = 300  # equations: below, loading a library takes longer than solving
 
 
+@functools.cache
+def _mkl() -> Any:
+    """MKL's library. pypardiso finds it too, but looks through the whole environment: a tenth of a second."""
+    beside = sorted((Path(sys.prefix) / "lib").glob("libmkl_rt.so*"))
+    if beside:
+        return ctypes.CDLL(str(beside[-1]))
+    from pypardiso.pardiso_wrapper import PyPardisoSolver
+
+    return PyPardisoSolver().libmkl
+
+
 class _Pardiso:
     """MKL PARDISO by pypardiso's library."""
 
     name = "pardiso"
 
     def __init__(self, system: System) -> None:
-        from pypardiso.pardiso_wrapper import PyPardisoSolver
-
-        wrapper = PyPardisoSolver()
-        self._call_library = wrapper._mkl_pardiso
-        wrapper.libmkl.MKL_Set_Num_Threads(ctypes.c_int(max(1, system.threads)))
+        library = _mkl()
+        self._call_library = library.pardiso
+        self._call_library.restype = None
+        library.MKL_Set_Num_Threads(ctypes.c_int(max(1, system.threads)))
         self._type = {"definite": 2, "symmetric": -2, "general": 11}[system.kind]
         self._handle = np.zeros(64, np.int64)
         self._options = np.zeros(64, np.int32)
