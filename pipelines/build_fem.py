@@ -160,7 +160,13 @@ def _modes(kind: str, asked: int) -> int:
 def _fixed(model: Model, control: FemControl) -> Any:
     fixed = np.zeros((len(model.xyz), 6), bool) if model.fixed is None else model.fixed.copy()
     if control.suppressed is not None:
-        fixed |= np.array(control.suppressed, bool)
+        suppressed = np.tile(np.array(control.suppressed, bool), (len(fixed), 1))
+        for block in model.blocks:
+            if (
+                block.family == "shell"
+            ):  # PAK's sixth is the turn about the normal, which our shells tie to the membrane
+                suppressed[block.nodes.ravel(), 5] = False
+        fixed |= suppressed
     for constraint in model.constraints:
         fixed[constraint.nodes] |= constraint.dofs
     return fixed

@@ -49,7 +49,7 @@ def to_fem(model: Model, settings: Settings) -> tuple[Model, Report]:
         raise ValueError("the mesh has no elements that a .dat deck can say")
     whole = replace(model, blocks=blocks)
     chosen = chosen_parts(whole)
-    massless = settings["fem"]["analysis"] == "static" and not model.body_loads
+    massless = settings["fem"]["analysis"] == "static" and not model.body_loads and not any(settings["gravity"])
     materials = materials_of(whole, chosen, settings, report, massless=massless)
     chosen = _with_laws(whole, chosen, materials, report)
     target = keep_parts(whole, np.array(chosen))

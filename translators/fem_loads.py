@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from zrno.translators import held
-from zrno.translators.model import Curve, Floats, Ints, Model, NodalLoad
+from zrno.translators.elements import TABLE, Element
+from zrno.translators.model import BodyLoad, Curve, FaceLoad, Floats, Ints, Model, NodalLoad
 from zrno.translators.report import Report
 from zrno.translators.settings import Settings
 
@@ -27,11 +28,13 @@ def node_set(model: Model, settings: Settings, name: str) -> Ints:
 
 
 def of_settings(model: Model, settings: Settings) -> None:
-    """Forces and displacements that the settings give to sets of nodes, and the functions that they name."""
+    """Gravity; forces, displacements and pressure that the settings give to sets of nodes; functions that they name."""
     numbers = {}
     for name, entry in settings["functions"].items():
         numbers[name] = max(model.curves, default=0) + 1
         model.curves[numbers[name]] = Curve(numbers[name], name, np.array(entry["points"], float))
+    if any(settings["gravity"]):
+        model.body_loads.append(BodyLoad(tuple(settings["gravity"]), None))
     for name, entry in settings["sets"].items():
         curve = None if entry["function"] is None else numbers[entry["function"]]
         for kind in ("displacement", "force"):
@@ -42,6 +45,59 @@ def of_settings(model: Model, settings: Settings) -> None:
                 nodes = node_set(model, settings, name)
                 dofs, values = np.full(len(nodes), axis + 1), np.full(len(nodes), float(value))
                 model.nodal_loads.append(NodalLoad(kind, nodes, dofs, values, curve, name=name))
+        if entry["pressure"] or any(entry["traction"]):
+            _face_loads(model, settings, name, entry, curve)
+
+
+def _face_loads(model: Model, settings: Settings, name: str, entry: Any, curve: int | None) -> None:
+    """Pressure and traction of a set on the faces that lie in it."""
+    found = faces_in(model, node_set(model, settings, name))
+    if not found:
+        message = "no face of an element has all its nodes in this set"
+        settings.fault(("sets", name), message, name, "a surface of solids, shells, or an edge in the plane")
+        settings.stop()
+    for faces in found:
+        values = np.full((len(faces), 1), 1.0)
+        if entry["pressure"]:
+            model.face_loads.append(FaceLoad(faces, entry["pressure"] * values, 0, curve, name=name))
+        for axis, part in enumerate(entry["traction"]):
+            if part:
+                model.face_loads.append(FaceLoad(faces, part * values, axis + 1, curve, name=name))
+
+
+def faces_in(model: Model, nodes: Ints) -> list[Ints]:
+    """Faces (f, k) with all nodes in a set, each outwards: of solids those of one element alone, shells, plane edges.
+
+    Pressure acts against the right-hand normal, so into solids, and against the normal of shells.
+    """
+    mine = np.zeros(len(model.xyz), bool)
+    mine[nodes] = True
+    by_size: dict[int, list[Ints]] = {}
+    for block in model.blocks:
+        element = TABLE[block.kind]
+        if element.dimension == 2 and model.dimension == 2:
+            corner_faces: Any = element.shape.edges
+        else:
+            corner_faces = [element.face_cycle(k)[0] for k in range(max(1, len(element.shape.faces)))]
+        for cycle in corner_faces:
+            order = list(cycle) if model.dimension == 2 else _corners_first(cycle, element)
+            faces = block.nodes[:, order]
+            faces = faces[mine[faces].all(axis=1)]
+            if len(faces):
+                by_size.setdefault(len(order), []).append(faces)
+    found = []
+    for pieces in by_size.values():
+        faces = np.concatenate(pieces)
+        _, first, count = np.unique(np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True)
+        alone = faces[np.sort(first[count == 1])]
+        if len(alone):
+            found.append(alone)
+    return found
+
+
+def _corners_first(cycle: tuple[int, ...], element: Element) -> list[int]:
+    """A face's border nodes in turn as corners, then mid-sides."""
+    return list(cycle) if not element.mid_edges else [*cycle[::2], *cycle[1::2]]
 
 
 def as_the_deck_says(model: Model, settings: Settings, report: Report) -> None:

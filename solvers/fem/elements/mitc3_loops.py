@@ -109,7 +109,7 @@ def strains(
 @kernel
 def integrate(
     nodes, x, u, turn, directors, half, points, point_weights, layers, layer_weights, root, drill, finite, modes,
-    stress, modulus, matrix, forces, answer, rest,
+    stress, modulus, matrix, forces, answer, rest, drilled,
 ):  # fmt: skip
     """Forces (e, 6, 3) of the stresses, and the stiffness (e, 6, 6, 3, 3) or None."""
     reference, thick, now, corner = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
@@ -129,6 +129,7 @@ def integrate(
         _gather(nodes, q, x, u, corner, directors, half, turn, reference, thick, now, moved, turns, finite)
         tied_shears(now, corner, metric, tied, base, c)
         forces[q] = 0.0
+        drilled[q] = 0.0
         pulled[:] = 0.0
         inner[:] = 0.0
         residual[:] = 0.0
@@ -213,6 +214,7 @@ def integrate(
                     for i in range(3):
                         value += drill_rows[e, i] * moved[i, e]
             area = _area(base) * point_weights[g] * drill[q]
+            drilled[q] += 0.5 * area * value * value
             for e in range(6):
                 for i in range(3):
                     forces[q, e, i] += area * value * drill_rows[e, i]

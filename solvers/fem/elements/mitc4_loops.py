@@ -122,11 +122,12 @@ def strains(
 @kernel
 def integrate(
     nodes, x, u, turn, directors, half, points, point_weights, layers, layer_weights, root, drill, finite, modes,
-    stress, modulus, matrix, forces, answer, rest,
+    stress, modulus, matrix, forces, answer, rest, drilled,
 ):  # fmt: skip
     """Forces (e, 6, 4) of the stresses, and the stiffness (e, 6, 6, 4, 4) or None; see `strains`.
 
-    drill: (e,) penalty of the drilling rotation per area; answer, rest: of the enhanced strains, see `continuum`.
+    drill: (e,) penalty of the drilling rotation per area, drilled: (e,) its energy; answer, rest: of the enhanced
+    strains, see `continuum_loops`.
     """
     reference, thick, now, corner = np.empty((4, 3)), np.empty((4, 3)), np.empty((4, 3)), np.empty((4, 3))
     moved, turns = np.empty((4, 6)), np.empty((4, 3, 3))
@@ -149,6 +150,7 @@ def integrate(
         _gather(nodes, q, x, u, corner, directors, half, turn, reference, thick, now, moved, turns, finite)
         tied_strains(now, corner, metric, tied, work)
         forces[q] = 0.0
+        drilled[q] = 0.0
         pulled[:] = 0.0
         if matrix is not None:
             matrix[q] = 0.0
@@ -244,6 +246,7 @@ def integrate(
                     for i in range(4):
                         value += drill_rows[c, i] * moved[i, c]
             area = _area(base) * point_weights[g] * drill[q]
+            drilled[q] += 0.5 * area * value * value
             for c in range(6):
                 for i in range(4):
                     forces[q, c, i] += area * value * drill_rows[c, i]

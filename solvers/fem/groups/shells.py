@@ -52,6 +52,7 @@ class ShellGroup:
         self.strain, self._step = np.zeros((m, 6)), np.zeros((m, 6))
         self.history, self._history = np.zeros((rows, m)), np.zeros((rows, m))
         self.energy, self.dissipated, self._work = np.zeros(m), np.zeros(m), np.zeros(m)
+        self._drilled, self.drilled = np.zeros(e), np.zeros(e)  # energy of the drilling's penalty
         self.alpha, self._alpha = np.zeros((e, modes)), np.zeros((e, modes))
         self._base, self._rest = np.zeros((e, modes)), np.zeros((e, modes))
         self._answer = np.zeros((e, modes, 6, k))
@@ -118,7 +119,7 @@ class ShellGroup:
         self._loops.integrate(
             *shell, turn, self.directors[lo:hi], self._half[lo:hi], self._points, self._weights, self._layers,
             self._layer_weights, self._root, self._drill[lo:hi], self._finite, self.modes, self.trial[rows], modulus,
-            matrix, forces, answer, rest,
+            matrix, forces, answer, rest, self._drilled[lo:hi],
         )  # fmt: skip
         sink.add(nodes, self.dofs, self._offsets[lo:hi], forces, matrix)
 
@@ -128,10 +129,11 @@ class ShellGroup:
         self.history[:] = self._history
         self.strain += self._step
         self.dissipated += self._work
+        self.drilled[:] = self._drilled
         self.alpha[:] = self._alpha
 
     def energies(self) -> tuple[float, float]:
-        return float(self.energy @ self.point_volume), float(self.dissipated @ self.point_volume)
+        return float(self.energy @ self.point_volume + self.drilled.sum()), float(self.dissipated @ self.point_volume)
 
     # mass
 
@@ -204,7 +206,7 @@ class ShellGroup:
 
     def state(self) -> dict[str, Floats]:
         return {"stress": self.stress, "strain": self.strain, "history": self.history, "alpha": self.alpha,
-                "energy": self.energy, "dissipated": self.dissipated}  # fmt: skip
+                "energy": self.energy, "dissipated": self.dissipated, "drilled": self.drilled}  # fmt: skip
 
     def restore(self, data: dict[str, Floats]) -> None:
         for name, own in self.state().items():
