@@ -102,9 +102,10 @@ class Result:
         """The series of all that there is: "particles", "elements" or both."""
         return [name for name in ("elements", "particles") if name in self._frames]
 
-    def arrays(self, name: str = "particles", index: int = -1) -> dict[str, NDArray[Any]]:
-        """The point arrays of a frame by name (of particles or of nodes), `position` (n, 3) with them."""
-        mesh = self.mesh(name, index)
+    def arrays(self, name: str | None = None, index: int = -1) -> dict[str, NDArray[Any]]:
+        """The point arrays of a frame by name, `position` (n, 3) with them: of particles where there are any, else of
+        nodes."""
+        mesh = self.mesh(name or (self.whole or ["particles"])[-1], index)
         return {"position": np.asarray(mesh.points)} | {
             key: np.asarray(mesh.point_data[key]) for key in mesh.point_data
         }

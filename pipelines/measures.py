@@ -1,4 +1,4 @@
-"""Numbers taken from the particles of a frame: extents, radii, fronts, means of fields. Pure functions of arrays.
+"""Numbers taken from the particles or nodes of a frame: extents, radii, fronts, fields. Pure functions of arrays.
 
 A particle is the cell of its volume: extents, fronts and radii reach half a cell, (mass / density)^(1/dimension) / 2,
 beyond its centre. To add a measure: a function here, whose keyword parameters are keys of the scene's
@@ -151,6 +151,18 @@ def clusters(now: Cloud, *, link: float = _LINK) -> float:
     return float(_heaps(now, link).max() + 1)
 
 
+def at(now: Cloud, *, point: Sequence[float], field: str) -> float:
+    """A field at the particle or node that began nearest to a point."""
+    moved = _moved(now)
+    nearest = int(np.argmin(((now.x - moved - np.asarray(point, float)) ** 2).sum(axis=1)))
+    return float(now.field(field)[nearest])
+
+
+def _moved(now: Cloud) -> Floats:
+    """How far each has moved, shape (n, 3); 0 where a frame does not say."""
+    return np.asarray(now.arrays.get("displacement", 0.0), float)
+
+
 def main_heap(now: Cloud) -> Cloud:
     """The particles that hang together with most of the mass: chains of neighbours not farther than _LINK cells."""
     heap = _heaps(now, _LINK)
@@ -196,6 +208,7 @@ MEASURES: dict[str, Callable[..., Any]] = {
     "min": lowest,
     "restitution": restitution,
     "profile": profile,
+    "at": at,
 }
 
 

@@ -47,6 +47,7 @@ class Quantity(Section):
     axis: Literal["x", "y", "z"] | None = None
     about: tuple[Finite, Finite, Finite] | None = None
     field: str | None = None
+    point: tuple[Finite, Finite, Finite] | None = None
     fraction: Annotated[float, Field(gt=0, le=1)] | None = None
     heap: bool | None = None
     link: Positive | None = None

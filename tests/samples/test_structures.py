@@ -1,0 +1,51 @@
+"""The samples of structures: their scenes from mesh to result, against their references."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from zrno.pipelines import load, run
+from zrno.pipelines.measures import Cloud, at
+from zrno.pipelines.samples import copy
+
+
+def _moved(name: str, folder: Path, scene: str, point: tuple[float, float, float], field: str) -> float:
+    copy(name, folder / name)
+    result = run([folder / name / scene], output=folder / "out", options={"render": []})
+    assert result["status"] == "done"
+    assert result["energy"]["balance_error"] < 0.005
+    return at(Cloud(load(folder / "out").arrays()), point=point, field=field)
+
+
+def test_scordelis_lo(tmp_path: Path) -> None:
+    edge = (16.0697, 0.0, 19.1511)
+    deflection = _moved("scordelis_lo", tmp_path, "scene.yaml", edge, "displacement_z")
+    assert deflection == pytest.approx(-0.3024, rel=0.005)
+    history = load(tmp_path / "out").history
+    assert history["reaction_z"][-1] == pytest.approx(90.0 * 25.0 * 25.0 * np.radians(40.0), rel=0.002)
+    names = load(tmp_path / "out").series
+    assert names == ["elements", "mat01"]  # a .dat deck has no names
+
+
+def test_hemisphere(tmp_path: Path) -> None:
+    out = _moved("hemisphere", tmp_path, "scene.yaml", (10.0, 0.0, 0.0), "displacement_x")
+    assert out == pytest.approx(0.0940, rel=0.01)
+
+
+def test_hemisphere_in_large_displacement(tmp_path: Path) -> None:
+    pinched = _moved("hemisphere", tmp_path, "large.yaml", (10.0, 0.0, 0.0), "displacement_x")
+    assert pinched == pytest.approx(-5.90, rel=0.01)
+    pulled = at(Cloud(load(tmp_path / "out").arrays()), point=(0.0, 10.0, 0.0), field="displacement_y")
+    assert pulled == pytest.approx(3.41, rel=0.01)
+
+
+def test_thick_cylinder(tmp_path: Path) -> None:
+    outside = _moved("thick_cylinder", tmp_path, "scene.yaml", (200.0, 0.0, 0.0), "displacement_x")
+    assert outside == pytest.approx(0.15330, rel=0.006)
+    frames = load(tmp_path / "out")
+    at_120 = at(Cloud(frames.arrays(None, 12)), point=(200.0, 0.0, 0.0), field="displacement_x")
+    assert frames.times[12] == pytest.approx(120.0)
+    assert at_120 == pytest.approx(0.07040330516559817, rel=0.006)
