@@ -35,6 +35,11 @@ def structure_problem(model: Model, path: str, method: Fem | None = None) -> fem
     method = method or Fem()
     numbers = sorted(model.curves)
     n = len(model.xyz)
+    fixed = _fixed(model, control)
+    lost = sum(int(fixed[a.nodes, a.dofs - 1].sum()) for a in model.nodal_loads if a.kind == "force" and len(a.nodes))
+    if lost:
+        warning = f"{path}: {lost} forces or moments on degrees of freedom that are held do nothing"
+        model.warnings += [warning] if warning not in model.warnings else []
     elements = tuple(_elements(model, method))
     plain = all(e.geometry == fem.SMALL for e in elements)
     return fem.Problem(
@@ -43,7 +48,7 @@ def structure_problem(model: Model, path: str, method: Fem | None = None) -> fem
         x=model.xyz,
         node_ids=model.node_ids,
         elements=elements,
-        fixed=_fixed(model, control),
+        fixed=fixed,
         curves=tuple(fem.Curve(*model.curves[k].points.T.copy()) for k in numbers),
         nodal_loads=tuple(_force(load, numbers) for load in model.nodal_loads if load.kind == "force"),
         motions=tuple(_motion(m, numbers) for m in model.nodal_loads if m.kind == "displacement" and not _initial(m)),
@@ -87,6 +92,18 @@ def refusals(model: Model, path: str) -> list[Fault]:
             law_of(material, None, model.curves)
         except (Unsupported, ValueError) as error:
             faults.append(Fault(path, at, 1, f"material {material.id}: {error}", "", "a law that is computed"))
+    for block in model.blocks:
+        timed = [name for name in ("birth", "death") if np.any(block.data.get(name, 0.0))]
+        if timed:
+            said = f"{' and '.join(timed)} of {block.kind} elements"
+            faults.append(Fault(path, 1, 1, f"{said} is not computed yet", "", "elements that are there all the time"))
+        if block.family == "shell" and block.kind not in ("tri3", "quad4"):
+            message = f"shells of the kind {block.kind} are not computed yet"
+            faults.append(Fault(path, 1, 1, message, "", "three or four nodes"))
+    for load in model.nodal_loads:
+        if load.kind == "temperature":
+            at = load.source.line if load.source else 1
+            faults.append(Fault(path, at, 1, "temperatures are not computed yet", "", "a deck without them"))
     if control.restart == 1:
         faults.append(Fault(path, 1, 1, "a restart of PAK's own files is not read", "IREST 1", "--resume"))
     return list(dict.fromkeys(faults))

@@ -44,6 +44,8 @@ def to_fem(model: Model, settings: Settings) -> tuple[Model, Report]:
     Raises InputError for settings that the mesh cannot take, ValueError for a mesh that cannot become a deck.
     """
     report = Report()
+    if settings["dimension"] is not None:  # a flat mesh may be a plate in space
+        model = replace(model, dimension=settings["dimension"])
     blocks = _blocks(model, report)
     if not blocks:
         raise ValueError("the mesh has no elements that a .dat deck can say")

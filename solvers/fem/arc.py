@@ -141,6 +141,9 @@ class PathFollowing:
     def momentum(self, solver: Solver) -> Floats:
         return np.zeros(3)
 
+    def forget(self) -> None:
+        """Nothing."""
+
     def state(self) -> dict[str, Floats]:
         last = np.zeros((0, 3)) if self._last is None else self._last
         return {"path": np.array([self.factor, self._length, self._first]), "last": last}

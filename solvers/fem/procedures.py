@@ -44,6 +44,9 @@ class Procedure(Protocol):
     def momentum(self, solver: Solver) -> Floats:
         """Linear momentum (3,)."""
 
+    def forget(self) -> None:
+        """What only speeds up the next step: a resumed run does not have it, so one that goes on drops it too."""
+
     def state(self) -> dict[str, Floats]:
         """What a checkpoint keeps beside the shape; `restore` takes it."""
 
@@ -62,6 +65,9 @@ class Still:
 
     def momentum(self, solver: Solver) -> Floats:
         return np.zeros(3)
+
+    def forget(self) -> None:
+        """Nothing."""
 
     def state(self) -> dict[str, Floats]:
         return {}
@@ -215,6 +221,9 @@ class Increments(Still):
     def momentum(self, solver: Solver) -> Floats:
         return np.zeros(3) if self.mover is None else self.mover.momentum()
 
+    def forget(self) -> None:
+        self._before, self._kept = None, 0.0
+
     def state(self) -> dict[str, Floats]:
         m = self.mover
         return {} if m is None else {"velocity": m.velocity, "acceleration": m.acceleration, "last": m.last}
@@ -263,6 +272,9 @@ class Explicit:
         assert velocity is not None
         out: Floats = (self.stepper.diagonal * velocity)[:, :3].sum(axis=0)
         return out
+
+    def forget(self) -> None:
+        """Nothing."""
 
     def state(self) -> dict[str, Floats]:
         return {"velocity": self.stepper.velocity, "half": np.array(self.stepper.half)}

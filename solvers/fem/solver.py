@@ -165,11 +165,15 @@ class Solver:
     # to be continued
 
     def checkpoint(self) -> dict[str, Any]:
-        """Everything that another process needs to go on."""
+        """Everything that another process needs to go on; this one goes on as if it were the other."""
+        self.procedure.forget()
+        self.assembly.system.factored = False
+        for group in self.assembly.groups:
+            group.forget()
         data: dict[str, Any] = {name: getattr(self, name) for name in _KEPT}
         data |= {"u": self.shape.u, "external_work": self.external_work, "damped": self.damped,
                  "damping": self._damping, "time": self.time, "step": self.step, "dt": self.dt,
-                 "start_energy": self.start_energy}  # fmt: skip
+                 "start_energy": self.start_energy, "iterations": self.iterations}  # fmt: skip
         if self.shape.turn is not None:
             data["turn"] = self.shape.turn
         data |= {f"procedure_{name}": values for name, values in self.procedure.state().items()}
@@ -187,7 +191,7 @@ class Solver:
         self._damping = np.array(data["damping"])
         self.external_work, self.damped = float(data["external_work"]), float(data["damped"])
         self.time, self.step, self.dt = float(data["time"]), int(data["step"]), float(data["dt"])
-        self.start_energy = float(data["start_energy"])
+        self.start_energy, self.iterations = float(data["start_energy"]), int(data["iterations"])
         self.procedure.restore(_named(data, "procedure_"))
         for k, group in enumerate(self.assembly.groups):
             group.restore(_named(data, f"group{k}_"))

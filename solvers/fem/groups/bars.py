@@ -112,6 +112,9 @@ class BarGroup:
         stress[:, :, 0] = self.stress[:, None]
         return stress, self.volume
 
+    def forget(self) -> None:
+        """Nothing."""
+
     def state(self) -> dict[str, Floats]:
         return {"stress": self.stress, "strain": self.strain, "history": self.history, "energy": self.energy,
                 "dissipated": self.dissipated}  # fmt: skip

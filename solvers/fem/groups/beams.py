@@ -148,6 +148,9 @@ class BeamGroup:
         stress[:, :, 0] = (self.forces[:, 6] / self.area)[:, None]
         return stress, self.volume
 
+    def forget(self) -> None:
+        """Nothing."""
+
     def state(self) -> dict[str, Floats]:
         return {"forces": self.forces, "energy": self.energy}
 

@@ -209,6 +209,9 @@ class ContinuumGroup:
         matrix = shapes.extrapolation(self.elements.kind, self.elements.gauss)
         return np.einsum("kg,egc->ekc", matrix, self.stress.reshape(len(self.nodes), -1, 6)), self.volume
 
+    def forget(self) -> None:
+        self._assembled = None
+
     def state(self) -> dict[str, Floats]:
         return {"stress": self.stress, "strain": self.strain, "history": self.history, "alpha": self.alpha,
                 "energy": self.energy, "dissipated": self.dissipated}  # fmt: skip
@@ -216,7 +219,7 @@ class ContinuumGroup:
     def restore(self, data: dict[str, Floats]) -> None:
         for name, own in self.state().items():
             own[:] = data[name]
-        self._assembled = None
+        self.forget()
 
 
 def _mean(thickness: Floats) -> Floats:

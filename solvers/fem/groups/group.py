@@ -87,6 +87,9 @@ class Group(Protocol):
     def at_nodes(self) -> tuple[Floats, Floats]:
         """Stress (e, n, 6) at the elements' nodes, and (e,) volumes."""
 
+    def forget(self) -> None:
+        """What only speeds up the next iteration: a resumed run does not have it, so one that goes on drops it too."""
+
     def state(self) -> dict[str, Floats]:
         """What a checkpoint keeps, by name; `restore` takes it."""
 

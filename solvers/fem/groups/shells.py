@@ -204,6 +204,9 @@ class ShellGroup:
         stress = np.einsum("kg,l,eglc->ekc", matrix, self._faces()[1], self._global())
         return stress, self.volume
 
+    def forget(self) -> None:
+        self._assembled = None
+
     def state(self) -> dict[str, Floats]:
         return {"stress": self.stress, "strain": self.strain, "history": self.history, "alpha": self.alpha,
                 "energy": self.energy, "dissipated": self.dissipated, "drilled": self.drilled}  # fmt: skip
@@ -211,4 +214,4 @@ class ShellGroup:
     def restore(self, data: dict[str, Floats]) -> None:
         for name, own in self.state().items():
             own[:] = data[name]
-        self._assembled = None
+        self.forget()

@@ -75,6 +75,9 @@ class PointGroup:
     def at_nodes(self) -> tuple[Floats, Floats]:
         return np.zeros((len(self.nodes), 1, 6)), self.volume
 
+    def forget(self) -> None:
+        """Nothing."""
+
     def state(self) -> dict[str, Floats]:
         return {"energy": self.energy}
 

@@ -1,0 +1,159 @@
+"""Runs of finite element decks: from the command's inputs to a result folder."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from zrno.pipelines import load, run
+from zrno.pipelines.check import check
+from zrno.pipelines.cli import app
+from zrno.translators.text import InputError
+
+MESH = """$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+3
+1 1 "clamped"
+1 2 "tip"
+2 3 "strip"
+$EndPhysicalNames
+$Nodes
+6
+1 0 0 0
+2 1 0 0
+3 2 0 0
+4 0 1 0
+5 1 1 0
+6 2 1 0
+$EndNodes
+$Elements
+4
+1 1 2 1 1 1 4
+2 1 2 2 2 3 6
+3 3 2 3 3 1 2 5 4
+4 3 2 3 3 2 3 6 5
+$EndElements
+"""
+SETTINGS = """
+dimension: 3
+materials:
+  strip: {law: elastic, E: 1000, nu: 0, density: 1, thickness: 0.1}
+sets:
+  clamped: {fixed: all}
+  tip: {force: [0, 0, -1.0e-4]}
+fem: {steps: 4}
+"""
+SCENE = """title: Strip
+units: mm-ms-g
+meshes:
+  - {source: strip.msh, target: strip.dat, settings: strip.yaml}
+decks: [strip.dat]
+"""
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Path:
+    (tmp_path / "strip.msh").write_text(MESH)
+    (tmp_path / "strip.yaml").write_text(SETTINGS)
+    (tmp_path / "scene.yaml").write_text(SCENE)
+    return tmp_path / "scene.yaml"
+
+
+def test_a_strip_from_mesh_to_frames(scene: Path, tmp_path: Path) -> None:
+    result = run([scene], output=tmp_path / "out", options={"fem.enhanced": "all"})
+    assert result["status"] == "done"
+    assert (result["nodes"], result["elements"], result["particles"], result["steps"]) == (6, 2, 0, 4)
+    found = load(tmp_path / "out")
+    assert found.series == ["elements", "mat01"]
+    np.testing.assert_allclose(found.times, [0, 0.25, 0.5, 0.75, 1.0])
+    bent = 2e-4 * 2**3 / (3 * 1000 * 0.1**3 / 12)  # of Euler and Bernoulli, shear beside it
+    tip = found.arrays(None, -1)["displacement"][:, 2].min()
+    assert tip == pytest.approx(-bent, rel=0.08)
+    half = found.arrays(None, 2)["displacement"][:, 2].min()
+    assert half == pytest.approx(0.5 * tip, rel=1e-5)
+    history = found.history
+    np.testing.assert_allclose(history["reaction_z"], 2e-4 * history["time"], rtol=1e-9, atol=1e-15)
+    np.testing.assert_allclose(history["internal"], history["external_work"], rtol=1e-9)
+    mesh = found.mesh("elements")
+    assert mesh.n_cells == 2
+    names = {"id", "material", "thickness", "stress", "von_mises", "plastic_strain", "stress_top", "stress_bottom"}
+    assert names <= set(mesh.cell_data)
+    assert {"displacement", "rotation", "reaction"} <= set(mesh.point_data)
+    manifest = json.loads((tmp_path / "out/run.json").read_text())
+    assert manifest["status"] == "done"
+
+
+@pytest.mark.parametrize("format", ["vtp", "vtk", "vtkhdf"])
+def test_the_formats_hold_the_same(scene: Path, tmp_path: Path, format: str) -> None:
+    run([scene], output=tmp_path / "out", options={"output.format": format})
+    mesh = load(tmp_path / "out").mesh("elements")
+    assert mesh.n_points == 6
+    assert mesh.n_cells == 2
+    assert mesh.point_data["displacement"][:, 2].min() < 0.0
+
+
+def test_what_goes_on_ends_in_the_same_bits(scene: Path, tmp_path: Path) -> None:
+    options = {"fem.geometry": "total", "sets.tip.force": [0, 0, -0.02]}
+    run([scene], output=tmp_path / "whole", options=options)
+    run([scene], output=tmp_path / "parts", options=options, until=0.5)
+    result = run([scene], output=tmp_path / "parts", options=options, resume=True)
+    assert result["steps"] == 4
+    whole, parts = load(tmp_path / "whole"), load(tmp_path / "parts")
+    assert (tmp_path / "whole/history.csv").read_text() == (tmp_path / "parts/history.csv").read_text()
+    np.testing.assert_array_equal(whole.arrays()["displacement"], parts.arrays()["displacement"])
+
+
+def test_a_structure_that_is_not_held_is_told(scene: Path, tmp_path: Path) -> None:
+    (tmp_path / "strip.yaml").write_text(SETTINGS.replace("clamped: {fixed: all}", "clamped: {fixed: x}"))
+    ran = CliRunner().invoke(app, ["run", str(scene), "-o", str(tmp_path / "out")])
+    assert ran.exit_code == 1
+    assert "can move without resistance" in ran.output
+
+
+def test_refusals_have_their_place(scene: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"--set:1:1: error: unknown key fem.sovler"):
+        run([scene.parent / "strip.dat"], options={"fem.sovler": 1}) if _made(scene) else None
+    with pytest.raises(InputError, match="tolerance"):
+        run([scene], output=tmp_path / "out", options={"fem.tolerance": -1})
+    assert not (tmp_path / "out").exists()
+
+
+def _made(scene: Path) -> bool:
+    run([scene], output=scene.parent / "made")
+    return (scene.parent / "strip.dat").exists()
+
+
+def test_a_picture_of_elements(scene: Path, tmp_path: Path) -> None:
+    run([scene], output=tmp_path / "out")
+    from zrno.pipelines.errors import Missing
+    from zrno.pipelines.render import render
+
+    try:
+        files = render(tmp_path / "out", field="displacement_z", size=(320, 240))
+        cells = render(tmp_path / "out", field="thickness", size=(320, 240), output=tmp_path / "t.png")
+    except Missing as missing:
+        pytest.skip(str(missing))
+    from matplotlib.image import imread
+
+    picture = imread(files[0])[..., :3]
+    assert picture.std() > 0.05  # neither white nor one colour
+    assert cells[0].exists()
+    with pytest.raises(ValueError, match="no field velocity"):
+        render(tmp_path / "out", field="velocity", size=(320, 240))
+
+
+def test_check_looks_at_structures(scene: Path) -> None:
+    rows = check([scene])
+    assert [row["faults"] for row in rows] == [[], []]
+
+
+def test_forces_that_do_nothing_are_told(scene: Path, tmp_path: Path) -> None:
+    (tmp_path / "strip.yaml").write_text(SETTINGS.replace("dimension: 3", "dimension: 2"))
+    result = run([scene], output=tmp_path / "out")
+    assert any("2 forces or moments on degrees of freedom that are held" in w for w in result["warnings"])
