@@ -142,7 +142,7 @@ def _body(model: Model, material: Material, repulsion: tuple[float, float], meth
         density=material.density,
         linear=given(material.viscosity_linear, LINEAR),
         quadratic=given(material.viscosity_quadratic, QUADRATIC),
-        least=given(material.rho_min, LEAST_DENSITY),
+        least=given(material.rho_min, defaults.least_density(law, material.density) or LEAST_DENSITY),
         most=given(material.rho_max, MOST_DENSITY),
         strength=repulsion[0],
         exponent=repulsion[1],
@@ -165,7 +165,7 @@ def _stays_whole(material: Material, method: Sph) -> bool:
 def _law(model: Model, material: Material, method: Sph) -> Law:
     said = method.laws.get(_name(material))
     if said is not None:
-        return soil_of(material, said)
+        return soil_of(material, said, automatic=method.cures == "auto")
     return law_of(material, _eos(model, material), model.curves)
 
 

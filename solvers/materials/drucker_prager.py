@@ -8,7 +8,7 @@ The cones of cohesion and friction angle are those of Mohr-Coulomb's triaxial co
 outer or inner corners of its hexagon) or of its collapse load in plane strain (Drucker & Prager 1952).
 
 Gap: grain without cohesion that is pulled apart opens, 1 and 3 above; pressed again it must first close by as much as
-it has opened before it bears anything. A law of rates alone bears at once, and so ratchets: loosened and pressed in turn,
+it has opened before it bears anything, a strain of at most OPEN. A law of rates alone bears at once, and so ratchets: loosened and pressed in turn,
 it becomes ever less dense under a pressure that belongs to full density.
 """
 
@@ -18,7 +18,7 @@ import math
 from typing import Literal, NamedTuple
 
 from .invariants import elastic_trial, flow_work, second_invariant
-from .law import GAP, PLASTIC_STRAIN, bulk_modulus, lame_constants, law_body, state_rows, stress_update
+from .law import GAP, OPEN, PLASTIC_STRAIN, bulk_modulus, lame_constants, law_body, state_rows, stress_update
 
 Match = Literal["compression", "extension", "plane_strain"]
 
@@ -127,7 +127,7 @@ def _update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_x
                 first = law.apex
                 left = 0.0
     if law.gaps:
-        state[GAP, i] = max(0.0, pull) / bulk if left == 0.0 else 0.0
+        state[GAP, i] = min(max(0.0, pull) / bulk, OPEN) if left == 0.0 else 0.0
     new = -first / 3.0
     scale = left / root if root > 0.0 else 0.0
     work = 0.0

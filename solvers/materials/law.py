@@ -26,6 +26,7 @@ JIT_OPTIONS = {"fastmath": FASTMATH, "error_model": "numpy"}
 
 PLASTIC_STRAIN = 0  # row of the equivalent plastic strain in the state of every law that has one
 GAP = 1  # row of the volume strain by which grain has opened, in the state of a law that remembers it
+OPEN = 0.3  # the widest gap: what grain in a layer loses of a kernel's sum until its neighbours are out of sight
 
 Function = Callable[..., Any]
 _BODIES: dict[str, dict[type, Function]] = {}
