@@ -59,7 +59,7 @@ def test_a_front_holds_a_share_of_the_mass() -> None:
 def test_a_toe_is_where_the_heap_becomes_shallow() -> None:
     """A layer of one cell under steps of three: however long the layer is, the toe at a depth of two stays."""
     for long in (30, 60):
-        now = cloud(np.concatenate([block(long, 1), block(20, 2) + [0.0, SPACING, 0.0]]), dimension=2)
+        now = cloud(np.concatenate([block(long, 1), np.array([0.0, SPACING, 0.0]) + block(20, 2)]), dimension=2)
         assert of("toe", now, axis="x", depth=1.0, window=1.0) == pytest.approx(20 * SPACING, abs=0.02)
         assert of("toe", now, axis="x", depth=0.25, window=1.0) == pytest.approx(long * SPACING, abs=0.02)
     with pytest.raises(ValueError, match="nowhere 2 deep"):
