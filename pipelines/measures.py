@@ -101,10 +101,10 @@ def toe(
     sector: float = 360.0,
     heap: bool = False,
 ) -> float:
-    """How far a heap reaches that is at least `depth` deep: its volume over a window of this length, by the floor there.
+    """How far a heap reaches that is still `depth` deep: its volume over a window of this length, by the floor there.
 
-    The last grains lie one particle thick, and a front by them moves with the spacing; this one does not. Along an axis,
-    in the plane; with `about`, a point: the distance from the axis through it, of a heap that spreads over a sector
+    The last grains lie one particle thick, and a front by them moves with the spacing; this does not. Along an axis, in
+    the plane; with `about`, a point: the distance from the axis through it, of a heap that spreads over a sector
     [degrees]. Raises ValueError where it is nowhere so deep.
     """
     now = main_heap(now) if heap else now

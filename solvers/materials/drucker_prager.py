@@ -8,8 +8,8 @@ The cones of cohesion and friction angle are those of Mohr-Coulomb's triaxial co
 outer or inner corners of its hexagon) or of its collapse load in plane strain (Drucker & Prager 1952).
 
 Gap: grain without cohesion that is pulled apart opens, 1 and 3 above; pressed again it must first close by as much as
-it has opened before it bears anything, a strain of at most OPEN. A law of rates alone bears at once, and so ratchets: loosened and pressed in turn,
-it becomes ever less dense under a pressure that belongs to full density.
+it has opened before it bears anything, a strain of at most OPEN. A law of rates alone bears at once, and so ratchets:
+loosened and pressed in turn, it becomes ever less dense under a pressure that belongs to full density.
 """
 
 from __future__ import annotations

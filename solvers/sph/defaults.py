@@ -25,5 +25,5 @@ def stress_diffusion(law: Law) -> float:
 
 
 def least_density(law: Law, density: float) -> float | None:
-    """Of one material; None: no limit. Grain that has opened is no bigger: its volume weighs in its neighbours' sums."""
+    """Of one material; None: no limit. Opened grain is no bigger: its volume weighs in its neighbours' sums."""
     return density * (1.0 - OPEN) if getattr(law, "gaps", False) else None

@@ -24,7 +24,7 @@ def test_the_cylinder_spreads_as_far_as_in_experiments_and_lies_below_its_fricti
     found = load(folder / "out")
     sand = Cloud(found.arrays("particles", len(found.times) - 1), 3).of(1)
     assert radius(sand, axis="z", heap=True, fraction=0.99) == pytest.approx(0.224, rel=0.15)
-    assert sand.mass.sum() == pytest.approx(2600.0 * np.pi * 0.1**2 * 0.1 / 4.0, rel=1e-6)
+    assert sand.mass.sum() == pytest.approx(2600.0 * np.pi * 0.1**2 * 0.1 / 4.0, rel=6e-3)  # the mesh has facets
     assert sand.x[:, :2].min() > 0.0  # the planes of symmetry hold, and the floor
     assert sand.x[:, 2].min() > 0.0
     r, z = np.hypot(sand.x[:, 0], sand.x[:, 1]), sand.x[:, 2]
