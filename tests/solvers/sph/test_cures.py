@@ -44,10 +44,10 @@ def test_corrected_gradients_of_linear_fields_are_exact_in_disorder_and_at_free_
 
 def test_the_correction_of_a_particle_that_sees_two_others_from_afar_is_bounded() -> None:
     """Its shape matrix is small but well conditioned; the whole inverse multiplied velocities by thousands."""
-    x = np.array([[0.0, 0.0], [0.23, 0.0], [0.0, 0.23]])
+    x = np.array([[0.0, 0.0, 0.0], [0.23, 0.0, 0.0], [0.0, 0.23, 0.0]])
     problem = one_body(x, cures=Cures(correction=True))
     seen = gradients(problem, np.eye(2))
-    assert 1e-6 < np.abs(seen[0]).max() < 0.5  # far from exact, and no harm
+    assert 0.01 < seen[0, 0, 0] < 0.5  # far from exact, and no harm
     solver = Solver(problem, threads=1)
     a = solver._arrays()
     pairs.velocity_gradient(
