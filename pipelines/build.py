@@ -11,7 +11,7 @@ from zrno.pipelines import contact
 from zrno.pipelines.laws import initial_energy, law_of, soil_of
 from zrno.pipelines.method import Sph
 from zrno.solvers.errors import Unsupported
-from zrno.solvers.materials import Law
+from zrno.solvers.materials import Law, family
 from zrno.solvers.sph import Body, Cures, Plane, Problem, defaults
 from zrno.translators.model import Eos, Material, Model, ParticleControl
 from zrno.translators.text import Fault, InputError
@@ -27,6 +27,10 @@ QUADRATIC, LINEAR = 1.5, 0.06  # artificial viscosity where the deck leaves it b
 HELD = 7  # boundary code of particles that do not move
 XSPH = 0.1  # the original program's factor
 LEAST_DENSITY, MOST_DENSITY = 1e-10, 1e10
+SINKS = (
+    "the gradient correction weakens what keeps grain out of a wall of particles (sph.bearing), and grain may sink "
+    "through it: leave sph.correction off"
+)
 
 
 def particle_problem(
@@ -58,6 +62,9 @@ def particle_problem(
     bodies = contact.with_strengths(bodies, contact.law_of_contact(control, chosen))
     if (warning := contact.unused(control, chosen)) and warning not in model.warnings:
         model.warnings.append(warning)
+    sinks = any(b.bearing for b in bodies) and any(family(b.law) == "grain" for b in bodies)
+    if sinks and _cures(control, chosen).correction and SINKS not in model.warnings:
+        model.warnings.append(SINKS)
     n = len(particles)
     body = np.searchsorted(numbers, particles.material)
     owned = np.bincount(body, minlength=len(numbers))
@@ -143,7 +150,7 @@ def _body(model: Model, material: Material, repulsion: tuple[float, float], meth
         density=material.density,
         linear=given(material.viscosity_linear, LINEAR),
         quadratic=given(material.viscosity_quadratic, QUADRATIC),
-        least=given(material.rho_min, LEAST_DENSITY),
+        least=given(material.rho_min, defaults.least_density(law, material.density) or LEAST_DENSITY),
         most=given(material.rho_max, MOST_DENSITY),
         strength=repulsion[0],
         exponent=repulsion[1],
@@ -166,7 +173,7 @@ def _stays_whole(material: Material, method: Sph) -> bool:
 def _law(model: Model, material: Material, method: Sph) -> Law:
     said = method.laws.get(_name(material))
     if said is not None:
-        return soil_of(material, said)
+        return soil_of(material, said, automatic=method.cures == "auto")
     return law_of(material, _eos(model, material), model.curves)
 
 

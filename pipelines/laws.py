@@ -35,14 +35,15 @@ def law_of(material: Material, eos: Eos | None, curves: Mapping[int, Curve]) -> 
     return build(material.parameters, hardening_table(material, curves), state)
 
 
-def soil_of(material: Material, said: Soil) -> Law:
-    """The soil that a scene says, with the moduli of the deck's elastic material."""
+def soil_of(material: Material, said: Soil, *, automatic: bool = True) -> Law:
+    """The soil that a scene says, with the moduli of the deck's elastic material. automatic: cures by material."""
     if material.law != "elastic":
         raise ValueError(f"a soil takes E and nu of an elastic material, this one is {material.law}")
     young, poisson = material.parameters["E"], material.parameters["nu"]
     if said.law == "mohr_coulomb":
         return laws.mohr_coulomb(young, poisson, said.c, said.phi, said.psi)
-    return laws.drucker_prager_soil(young, poisson, said.c, said.phi, said.psi, match=said.match)
+    gaps = automatic and said.c == 0.0 if said.gaps is None else said.gaps
+    return laws.drucker_prager_soil(young, poisson, said.c, said.phi, said.psi, match=said.match, gaps=gaps)
 
 
 def initial_energy(eos: Eos | None, density: float) -> float:

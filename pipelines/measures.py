@@ -91,6 +91,40 @@ def radius(
     return _holds(_distance(now, axis, about) + now.half, now.mass, fraction)
 
 
+def toe(
+    now: Cloud,
+    *,
+    axis: str,
+    depth: float,
+    window: float,
+    about: Sequence[float] | None = None,
+    sector: float = 360.0,
+    heap: bool = False,
+) -> float:
+    """How far a heap reaches that is still `depth` deep: its volume over a window of this length, by the floor there.
+
+    The last grains lie one particle thick, and a front by them moves with the spacing; this does not. Along an axis, in
+    the plane; with `about`, a point: the distance from the axis through it, of a heap that spreads over a sector
+    [degrees]. Raises ValueError where it is nowhere so deep.
+    """
+    now = main_heap(now) if heap else now
+    volume = now.mass / np.maximum(np.asarray(now.arrays["density"], float), 1e-300)
+    x = now.x[:, _AXES.index(axis)] if about is None else _distance(now, axis, about)
+    # the volume up to a place: each cell is a ramp, whose slope begins and ends with it
+    ends = np.concatenate([x - now.half, x + now.half])
+    slope = np.tile(volume / (2.0 * now.half), 2) * np.repeat([1.0, -1.0], len(x))
+    order = np.argsort(ends, kind="stable")
+    ends, slope = ends[order], np.cumsum(slope[order])
+    upto = np.concatenate([[0.0], np.cumsum(slope[:-1] * np.diff(ends))])
+    at = np.arange(0.5 * window if about is not None else ends[0], ends[-1] + window, 0.01 * window)
+    breadth = 1.0 if about is None else np.radians(sector) * at
+    held = np.interp(at + 0.5 * window, ends, upto) - np.interp(at - 0.5 * window, ends, upto)
+    deep = np.flatnonzero(held / (window * breadth) >= depth)
+    if not len(deep):
+        raise ValueError(f"the heap is nowhere {depth:g} deep")
+    return float(at[deep[-1]])
+
+
 def inner_radius(now: Cloud, *, axis: str, about: Sequence[float] = (0.0, 0.0, 0.0)) -> float:
     """About an axis through a point: where the material begins."""
     return float(max(0.0, (_distance(now, axis, about) - now.half).min()))
@@ -199,6 +233,7 @@ MEASURES: dict[str, Callable[..., Any]] = {
     "front": front,
     "back": back,
     "radius": radius,
+    "toe": toe,
     "inner_radius": inner_radius,
     "clusters": clusters,
     "centre": centre,

@@ -46,7 +46,8 @@ class Wall(Section):
 class Soil(Section):
     """A law that the deck has no card for. c: cohesion [pressure]; phi, psi: angles [degrees]; E and nu are the deck's.
 
-    match: in which test the cone of Drucker and Prager is as strong as Mohr and Coulomb's hexagon.
+    match: in which test the cone of Drucker and Prager is as strong as Mohr and Coulomb's hexagon; gaps: whether
+    grain that was pulled apart must close again before it bears, None: by `cures`, where it has no cohesion.
     """
 
     law: Literal["drucker_prager_soil", "mohr_coulomb"]
@@ -54,6 +55,7 @@ class Soil(Section):
     phi: Angle
     psi: Angle = 0.0
     match: Literal["compression", "extension", "plane_strain"] = "compression"
+    gaps: bool | None = None
 
 
 class Sph(Section):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from zrno.pipelines.replacing import replacing
 
 _MANY = 30  # runs, above which those beside the front have no label
 _GREY = "#8a8a8a"
+_LABEL = 56  # characters of the axis' label in a line
 # Where a label may stand beside its point, in points; the first place that is free is taken.
 _PLACES = [
     (7, 5, "left"), (7, -12, "left"), (-7, 5, "right"), (-7, -12, "right"), (0, 12, "center"), (0, -19, "center"),
@@ -33,7 +35,7 @@ def draw(target: Path, result: Mapping[str, Any]) -> Path:
     axis = figure.add_subplot()
     axis.set_title(result["title"] or "Speed against error", fontsize="large")
     axis.set_xlabel("wall time [s], compiling apart")
-    axis.set_ylabel(f"relative error of {result['quantity']}")
+    axis.set_ylabel(fill(f"relative error of {result['quantity']}", _LABEL))
     axis.set_xscale("log")
     axis.set_yscale("log")
     axis.grid(color="#dddddd", linewidth=0.6, which="major")

@@ -51,6 +51,9 @@ class Quantity(Section):
     fraction: Annotated[float, Field(gt=0, le=1)] | None = None
     heap: bool | None = None
     link: Positive | None = None
+    depth: Positive | None = None
+    window: Positive | None = None
+    sector: Annotated[float, Field(gt=0, le=360)] | None = None
     bins: Annotated[int, Field(ge=1, le=10_000)] | None = None
 
     @property

@@ -18,6 +18,7 @@ Floats = NDArray[np.float64]
 SEARCHED = 0.8  # line search is done where the work along the step stays above this share
 SLACK = 1e-13  # of the largest forces on the way: less is round-off
 LEAST = 1e-6  # of the same: what the forces at the end are taken to be at least, as where a structure only turns
+GUESSED = 8  # iterations from a guess; one that takes more was none
 FAST = 0.1  # an iteration that leaves less of the residual than this needs no new factors
 
 
@@ -36,6 +37,7 @@ class Trace:
 
     residuals: list[float] = field(default_factory=list)
     factorisations: int = 0
+    largest: float = 0.0  # force on the way
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,12 +58,13 @@ class Target:
 
 def equilibrium(
     assembly: Assembly, start: Shape, target: Target, dt: float, how: Iteration, *, definite: bool = True,
-    keep: bool = False, guess: Floats | None = None,
+    keep: bool = False, guess: Floats | None = None, floor: float = 0.0,
 ) -> tuple[Shape, Floats, Trace]:  # fmt: skip
     """The shape in equilibrium, the internal forces (n, 6) and how the iterations went. Raises NotConverged.
 
     keep: the factors that there are hold, of a linear structure and an equal step; guess: (n, 6) a change to begin
-    with, prescribed motion included, in place of the answer to the stiffness at the start.
+    with, prescribed motion included, in place of the answer to the stiffness at the start; floor: the largest force on
+    the way of a step like this.
     """
     trace = Trace()
     shape = start if guess is None else start.moved(guess)
@@ -71,11 +74,11 @@ def equilibrium(
     stiff = guess is None and (stale or moved is not None)
     internal, of_motion = _evaluate(assembly, shape, start, dt, stiff=stiff, moved=moved)
     residual = _residual(assembly, target, shape, loads, internal, of_motion)
-    largest = max(_size(loads), _size(of_motion), _size(internal))
+    largest = max(floor, _size(loads), _size(of_motion), _size(internal))
     if guess is not None:
         stale = not assembly.system.factored or _share(residual, loads, internal, largest) > FAST
     first_energy, before = 0.0, math.inf
-    for iteration in range(how.most):
+    for iteration in range(how.most if guess is None else min(how.most, GUESSED)):
         if stale:
             if iteration or guess is not None:
                 _evaluate(assembly, shape, start, dt, stiff=True, moved=None)
@@ -93,7 +96,7 @@ def equilibrium(
             trial, loads, internal, left = _searched(
                 assembly, target, shape, start, step, dt, left, along, (trial, loads, internal)
             )
-        largest = max(largest, _size(loads), _size(internal))
+        largest = trace.largest = max(largest, _size(loads), _size(internal))
         energy = abs(float(residual @ assembly.gather(step)))
         if iteration == 0:
             first_energy = max(energy, _energy(loads, step))
@@ -109,10 +112,8 @@ def equilibrium(
         stale = not keep and (how.method == "newton" or (how.method == "adaptive" and slow))
         before = size
     worst = divmod(int(assembly.where[int(np.argmax(np.abs(residual)))]), 6) if assembly.transform is None else None
-    raise NotConverged(
-        f"no equilibrium after {how.most} iterations: the residual force is {trace.residuals[-1]:.1e} of the loads",
-        worst,
-    )
+    count, last = len(trace.residuals), trace.residuals[-1]
+    raise NotConverged(f"no equilibrium after {count} iterations: the residual force is {last:.1e} of the loads", worst)
 
 
 def _share(residual: Floats, loads: Floats, internal: Floats, largest: float) -> float:

@@ -27,6 +27,9 @@ Floats = NDArray[np.float64]
 log = logging.getLogger("zrno")
 
 
+WARY = 20  # steps without a guess after one that went wrong
+
+
 class Procedure(Protocol):
     """What the solver asks of a procedure. name: for the log."""
 
@@ -143,6 +146,8 @@ class Increments(Still):
         self.mover: Integrator | None = None
         self._kept = 0.0  # the step whose factors are there, of a linear structure
         self._before: tuple[Floats, Floats, float] | None = None  # the last change, what of it was prescribed, its step
+        self._largest = 0.0  # force on the way of the last step
+        self._wary = 0  # steps to come that are not guessed, since a guess went wrong
         p = solver.problem
         self.name = f"{'linear' if solver.linear else f'nonlinear ({p.iteration.method})'} static"
         if p.dynamics is not None:
@@ -180,12 +185,16 @@ class Increments(Still):
         guess = self._guess(change, dt)
         how = solver.problem.iteration
         try:
-            shape, internal, trace = equilibrium(solver.assembly, solver.shape, target, dt, how, keep=keep, guess=guess)
+            shape, internal, trace = equilibrium(
+                solver.assembly, solver.shape, target, dt, how, keep=keep, guess=guess, floor=self._largest
+            )
         except NotConverged:
             self._before = None
             if guess is None:
                 raise
+            self._wary = WARY
             shape, internal, trace = equilibrium(solver.assembly, solver.shape, target, dt, how, keep=keep)
+        self._largest = trace.largest
         self._kept = dt if solver.linear else 0.0
         self._before = (shape.u - solver.shape.u, change, dt)
         solver.iterations += len(trace.residuals)
@@ -206,6 +215,9 @@ class Increments(Still):
         """The last step's change once more, where the motion that is prescribed goes on as it went; None elsewhere."""
         if self._before is None or self.mover is not None:
             return None
+        if self._wary:
+            self._wary -= 1
+            return None
         last, prescribed, before = self._before
         share = dt / before
         if not np.allclose(change, share * prescribed, rtol=1e-9, atol=1e-12 * float(np.abs(change).max(initial=0.0))):
@@ -222,7 +234,7 @@ class Increments(Still):
         return np.zeros(3) if self.mover is None else self.mover.momentum()
 
     def forget(self) -> None:
-        self._before, self._kept = None, 0.0
+        self._before, self._kept, self._largest, self._wary = None, 0.0, 0.0, 0
 
     def state(self) -> dict[str, Floats]:
         m = self.mover

@@ -14,7 +14,7 @@ from .failing import Failing, failing
 from .fluid import Fluid, fluid
 from .hardening import Linear, Table, table
 from .hydro import Hydro, hydro
-from .law import PLASTIC_STRAIN, constant_wave, sound_speed, state_rows
+from .law import OPEN, PLASTIC_STRAIN, constant_wave, sound_speed, state_rows
 from .mohr_coulomb import MohrCoulomb, mohr_coulomb
 from .von_mises import VonMisesCurve, VonMisesIsotropic, VonMisesMixed, von_mises, von_mises_curve
 
@@ -43,7 +43,13 @@ def family(law: Law) -> str:
     return _FAMILIES.get(type(law), "solid")
 
 
+def cohesive(law: Law) -> bool:
+    """Whether grain of a soil's law holds together by itself."""
+    return (isinstance(law, DruckerPrager) and law.k > 0.0) or (isinstance(law, MohrCoulomb) and law.cohesive > 0.0)
+
+
 __all__ = [
+    "OPEN",
     "PLASTIC_STRAIN",
     "Cap",
     "CapHardening",
@@ -69,6 +75,7 @@ __all__ = [
     "VonMisesIsotropic",
     "VonMisesMixed",
     "cap",
+    "cohesive",
     "constant_wave",
     "drucker_prager",
     "drucker_prager_soil",

@@ -25,6 +25,8 @@ from ..jit import FASTMATH
 JIT_OPTIONS = {"fastmath": FASTMATH, "error_model": "numpy"}
 
 PLASTIC_STRAIN = 0  # row of the equivalent plastic strain in the state of every law that has one
+GAP = 1  # row of the volume strain by which grain has opened, in the state of a law that remembers it
+OPEN = 0.3  # the widest gap: what grain in a layer loses of a kernel's sum until its neighbours are out of sight
 
 Function = Callable[..., Any]
 _BODIES: dict[str, dict[type, Function]] = {}
@@ -81,6 +83,12 @@ def wave_speed(law, rho, e, state, i):
     rho: density; e: energy per unit mass. See `constant_wave`.
     """
     return math.sqrt((law.lame + 2.0 * law.shear) / rho)
+
+
+@dispatched
+def bulk_modulus(law):
+    """Pressure per volume strain of a law whose pressure and density go together; 0 of all others."""
+    return 0.0
 
 
 @dispatched

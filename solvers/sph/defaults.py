@@ -7,7 +7,7 @@ cure.
 
 from __future__ import annotations
 
-from ..materials import Law, family
+from ..materials import OPEN, Law, cohesive, family
 
 DENSITY_DIFFUSION = 0.1  # fluids: Molteni & Colagrossi (2009)
 STRESS_DIFFUSION = 0.1  # grain: Nguyen et al. (2017)
@@ -19,5 +19,11 @@ def density_diffusion(law: Law) -> float:
 
 
 def stress_diffusion(law: Law) -> float:
-    """Of one material."""
-    return STRESS_DIFFUSION if family(law) == "grain" else 0.0
+    """Of one material. None with cohesion: the stress that holds a slope up is no straight line, and diffusion of it
+    creeps until the slope fails (sample slope_failure)."""
+    return STRESS_DIFFUSION if family(law) == "grain" and not cohesive(law) else 0.0
+
+
+def least_density(law: Law, density: float) -> float | None:
+    """Of one material; None: no limit. Opened grain is no bigger: its volume weighs in its neighbours' sums."""
+    return density * (1.0 - OPEN) if getattr(law, "gaps", False) else None

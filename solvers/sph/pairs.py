@@ -22,6 +22,10 @@ from .smoothing import inverse_root, shape_slope, shape_value
 TINY = 1e-30  # keeps the inverse root of coincident particles finite
 ALONE = np.int64(0x7E37E43C8800759C)  # the bits of 1e300: the squared distance of a particle without neighbours
 WELL = 2e-3  # a shape matrix whose determinant is this small beside its mean eigenvalue's power is not inverted
+# 1/tr(inverse) of the shape matrix, below which less and less of the inverse is taken: whole at the corner of a solid
+# block (0.02 at least), and never more than a factor of 50. A grain that flies past two others far off has a small
+# matrix, well conditioned; its whole inverse multiplied velocities by thousands, and threw grain through the floor.
+SEEN = 0.02
 
 
 @kernel
@@ -123,13 +127,16 @@ def velocity_gradient(
                 byz = 0.0
                 bzx = 0.0
                 if determinant > WELL * mean * mean * mean and mean > 0.0:
-                    inverse = 1.0 / determinant
-                    bxx = cxx * inverse
+                    cyy = mxx * mzz - mzx * mzx
+                    czz = mxx * myy - mxy * mxy
+                    part = min(1.0, determinant / (SEEN * (cxx + cyy + czz)))
+                    inverse = part / determinant
+                    bxx = cxx * inverse + (1.0 - part)
                     bxy = cxy * inverse
                     bzx = czx * inverse
-                    byy = (mxx * mzz - mzx * mzx) * inverse
+                    byy = cyy * inverse + (1.0 - part)
                     byz = (mxy * mzx - mxx * myz) * inverse
-                    bzz = (mxx * myy - mxy * mxy) * inverse
+                    bzz = czz * inverse + (1.0 - part)
                 correction[0, i] = bxx
                 correction[1, i] = byy
                 correction[2, i] = bzz
@@ -154,9 +161,10 @@ def velocity_gradient(
                 byy = 1.0
                 bxy = 0.0
                 if determinant > WELL * mean * mean and mean > 0.0:
-                    inverse = 1.0 / determinant
-                    bxx = myy * inverse
-                    byy = mxx * inverse
+                    part = min(1.0, determinant / (SEEN * 2.0 * mean))
+                    inverse = part / determinant
+                    bxx = myy * inverse + (1.0 - part)
+                    byy = mxx * inverse + (1.0 - part)
                     bxy = -mxy * inverse
                 correction[0, i] = bxx
                 correction[1, i] = byy

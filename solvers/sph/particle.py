@@ -6,7 +6,7 @@ import numpy as np
 from numba.extending import overload
 
 from ..jit import kernel
-from ..materials.law import JIT_OPTIONS, rotate_state, stress_update, wave_speed
+from ..materials.law import JIT_OPTIONS, bulk_modulus, rotate_state, stress_update, wave_speed
 from ..materials.rotation import first_order_spin, spin_rotation
 from .nominal import LENGTH
 
@@ -68,6 +68,9 @@ def constitutive(
             rho = density[i] * (1.0 - 0.5 * volumetric) / (1.0 + 0.5 * volumetric)
         if density_rate is not None:
             rho += density_rate[i] * dt
+        if stress_rate is not None and bulk_modulus(law) > 0.0:  # else pressure and density drift apart
+            mean = (stress_rate[0, i] + stress_rate[1, i] + stress_rate[2, i]) / 3.0
+            rho -= rho * mean * dt / bulk_modulus(law)
         rho = min(max(rho, q[2]), q[3])
         if numbers.original:
             w_xy *= 0.5

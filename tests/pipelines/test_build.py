@@ -200,6 +200,35 @@ def test_a_method_that_there_is_not_is_bad_input(key: str, value: object, messag
         of_options({key: value})
 
 
+def test_grain_without_cohesion_remembers_its_gaps_unless_told_otherwise(tmp_path: Path) -> None:
+    model = _read(tmp_path)
+    name = model.materials[1].name
+    model.materials[1].law = "elastic"
+    density = model.materials[1].density
+    for more, gaps, least in (({}, True, 0.7 * density), ({"gaps": False}, False, 1e-10)):
+        soil = {"law": "drucker_prager_soil", "phi": 30, **more}
+        body = particle_problem(model, "deck.mcm", method=of_options({f"sph.laws.{name}": soil})).bodies[0]
+        assert getattr(body.law, "gaps", None) is gaps
+        assert body.least == pytest.approx(least)
+        assert body.stress_diffusion == 0.1
+    soil = {"law": "drucker_prager_soil", "phi": 30}
+    off = of_options({f"sph.laws.{name}": soil, "sph.cures": "none"})
+    assert getattr(particle_problem(model, "deck.mcm", method=off).bodies[0].law, "gaps", None) is False
+
+
+def test_grain_that_may_sink_through_its_floor_is_warned_of(tmp_path: Path) -> None:
+    model = _read(tmp_path)
+    name = model.materials[1].name
+    model.materials[1].law = "elastic"
+    assert model.particles is not None
+    model.particles.bc[:] = 7
+    said = {f"sph.laws.{name}": {"law": "drucker_prager_soil", "phi": 30}, "sph.bearing": [name]}
+    particle_problem(model, "deck.mcm", method=of_options({**said, "sph.correction": False}))
+    assert not any("sink" in line for line in model.warnings)
+    particle_problem(model, "deck.mcm", method=of_options({**said, "sph.correction": True}))
+    assert sum("sink" in line for line in model.warnings) == 1
+
+
 def test_a_soil_takes_the_moduli_of_the_deck_and_a_wall_is_held(tmp_path: Path) -> None:
     model = _read(tmp_path)
     name = model.materials[1].name
@@ -213,6 +242,7 @@ def test_a_soil_takes_the_moduli_of_the_deck_and_a_wall_is_held(tmp_path: Path) 
     own = model.materials[1].parameters
     assert body.law == drucker_prager_soil(own["E"], own["nu"], 2.0, 30.0, match="plane_strain")
     assert body.bearing
+    assert body.stress_diffusion == 0.0  # with cohesion it creeps
     model.particles.bc[0] = 0
     said = of_options({"sph.laws.clay": soil, "sph.bearing": [name, "rock"]})
     with pytest.raises(InputError) as caught:

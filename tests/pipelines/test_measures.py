@@ -56,6 +56,25 @@ def test_a_front_holds_a_share_of_the_mass() -> None:
     assert of("back", now, axis="x", fraction=0.9) == pytest.approx(10 * SPACING)
 
 
+def test_a_toe_is_where_the_heap_becomes_shallow() -> None:
+    """A layer of one cell under steps of three: however long the layer is, the toe at a depth of two stays."""
+    for long in (30, 60):
+        now = cloud(np.concatenate([block(long, 1), np.array([0.0, SPACING, 0.0]) + block(20, 2)]), dimension=2)
+        assert of("toe", now, axis="x", depth=1.0, window=1.0) == pytest.approx(20 * SPACING, abs=0.02)
+        assert of("toe", now, axis="x", depth=0.25, window=1.0) == pytest.approx(long * SPACING, abs=0.02)
+    with pytest.raises(ValueError, match="nowhere 2 deep"):
+        of("toe", now, axis="x", depth=2.0, window=1.0)
+
+
+def test_a_round_toe_counts_the_volume_by_the_floor_of_its_sector() -> None:
+    x = block(40, 40, 2)
+    quarter = cloud(x[np.hypot(x[:, 0], x[:, 1]) < 20.0])
+    given = {"axis": "z", "about": [0, 0, 0], "window": 1.0}
+    assert of("toe", quarter, depth=0.5, sector=90.0, **given) == pytest.approx(20.0, abs=0.25)
+    with pytest.raises(ValueError, match="nowhere"):
+        of("toe", quarter, depth=0.5, **given)  # over the whole circle it is a quarter as deep
+
+
 def test_a_stray_grain_is_no_part_of_the_heap() -> None:
     x = np.concatenate([block(6, 4), [[50.0, 60.0, 0.0]]])
     now = cloud(x, dimension=2)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from zrno.solvers.materials import drucker_prager, drucker_prager_soil, mohr_coulomb
+from zrno.solvers.materials import OPEN, drucker_prager, drucker_prager_soil, mohr_coulomb
 from zrno.solvers.materials.drucker_prager import cone
 from zrno.solvers.materials.mohr_coulomb import mohr_coulomb_return
 from zrno.solvers.materials.point import Point, drive
@@ -75,6 +75,36 @@ def test_tension_cut_offs() -> None:
     pull[:, 1:3] = 0.0
     stress = drive(mohr_coulomb(E, NU, 1.0, 30.0, tension=0.5), pull).stress[-1]
     assert stress[0] == pytest.approx(0.5)
+
+
+def test_grain_that_has_opened_closes_before_it_bears() -> None:
+    """Pressed, pulled apart by 5 %, pressed by 4 %, and by 2 % more; without a gap it bears from the first."""
+    bulk = E / (3.0 * (1.0 - 2.0 * NU))
+    path = np.zeros((400, 6))
+    path[:, :3] = np.repeat([-0.001, 0.051, -0.04, -0.02], 100)[:, None] / 300.0
+    opened, ratcheted = (drive(drucker_prager_soil(E, NU, 0.0, 31.0, gaps=gaps), path) for gaps in (True, False))
+    pressure = -opened.stress[[99, 199, 299, 399], :3].mean(axis=1)
+    assert pressure == pytest.approx(bulk * np.array([0.001, 0.0, 0.0, 0.01]), abs=1e-9)
+    assert opened.state[[199, 299, 399], 1] == pytest.approx([0.05, 0.01, 0.0], abs=1e-9)
+    assert opened.density[-1] == pytest.approx(math.exp(0.01), rel=1e-6)  # the pressure is that of the density
+    assert -ratcheted.stress[-1, :3].mean() == pytest.approx(bulk * 0.06)
+    assert opened.dissipated.min() >= 0.0
+    pull = np.full((100, 6), 0.01)
+    assert drive(drucker_prager_soil(E, NU, 0.0, 31.0), pull).state[-1, 1] == OPEN
+    assert drucker_prager_soil(E, NU, 1.0, 31.0).gaps is False
+    with pytest.raises(ValueError, match="without cohesion"):
+        drucker_prager_soil(E, NU, 1.0, 31.0, gaps=True)
+
+
+def test_dilation_fills_the_gap_that_it_presses_on() -> None:
+    """Sheared under no pressure with its neighbours held: what flows dilates, and presses, with no gap left."""
+    law = drucker_prager_soil(E, NU, 0.0, 30.0, 30.0)
+    path = np.zeros((100, 6))
+    path[:, 3] = 1e-4
+    path[0, :3] = 1e-6
+    found = drive(law, path)
+    assert found.stress[-1, 0] < 0.0
+    assert found.state[-1, 1] == 0.0
 
 
 def nearest(law: Any, trial: np.ndarray, guess: np.ndarray) -> np.ndarray:

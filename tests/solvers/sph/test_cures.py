@@ -42,6 +42,21 @@ def test_corrected_gradients_of_linear_fields_are_exact_in_disorder_and_at_free_
     assert np.abs(exact).max() < 1e-12 * np.abs(slope).max() * 10
 
 
+def test_the_correction_of_a_particle_that_sees_two_others_from_afar_is_bounded() -> None:
+    """Its shape matrix is small but well conditioned; the whole inverse multiplied velocities by thousands."""
+    x = np.array([[0.0, 0.0, 0.0], [0.23, 0.0, 0.0], [0.0, 0.23, 0.0]])
+    problem = one_body(x, cures=Cures(correction=True))
+    seen = gradients(problem, np.eye(2))
+    assert 0.01 < seen[0, 0, 0] < 0.5  # far from exact, and no harm
+    solver = Solver(problem, threads=1)
+    a = solver._arrays()
+    pairs.velocity_gradient(
+        0, 3, a.first, a.count, a.rows, solver._shape, a.x, a.y, None, a.z, a.u, a.v, a.w, a.volume, None,
+        solver._numbers.inverse_h2, solver._numbers.scale, None, a.gradient, a.correction,
+    )  # fmt: skip
+    assert np.abs(a.correction[:, :3]).max() < 1.0 / pairs.SEEN
+
+
 def turned(problem: Problem, turns: int, steps: int, start: tuple[float, ...]) -> np.ndarray:
     """(4, n) stresses of a body whose particles are led round in circles, from a uniform stress xx yy zz xy on."""
     solver = Solver(problem, threads=1)
