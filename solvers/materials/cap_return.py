@@ -262,7 +262,7 @@ def cap_slopes(law, shear, first, root, centre):
         curvature = -law.decay * (slope - law.theta)
         by_first = 1.0 / (1.0 + scale * (slope * slope - (root - strength) * curvature))
         by_root = scale * slope * by_first
-    if left < strength:
+    if left == root:
         return left, by_first, by_root, 0.0, 1.0
     return left, by_first, by_root, slope * by_first, slope * by_root
 

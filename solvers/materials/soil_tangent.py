@@ -12,7 +12,7 @@ import math
 
 from ..jit import kernel
 from .cam_clay import CamClay, clay_return
-from .cap import GROWTH, Cap
+from .cap import GROWTH, Cap, KinematicCap
 from .cap_return import cap_slopes, inside
 from .drucker_prager import DruckerPrager
 from .invariants import elastic_trial, second_invariant
@@ -158,3 +158,9 @@ def _tangent(
 @law_body(symmetric_tangent, DruckerPrager, Perzyna)
 def _associated(law):
     return law.slope == law.flow
+
+
+@law_body(symmetric_tangent, CamClay, Cap, KinematicCap)
+def _hardening_by_volume(law):
+    """The flow is associated, but the implicit step's surface moves with the compaction that the step itself makes."""
+    return False
