@@ -74,6 +74,7 @@ def equilibrium(
         if not keep and (iteration == 0 or how.method == "newton"):
             if iteration:
                 internal, _ = _evaluate(assembly, shape, start, dt, stiff=True, moved=None)
+                residual = _residual(assembly, target, shape, loads, internal, None)
             definite = _factor(assembly, target, definite=definite)
             trace.factorisations += 1
         step = assembly.expand(assembly.solve(residual))
