@@ -11,7 +11,7 @@ import numpy as np
 from ..jit import kernel
 from .law import law_body, stress_update
 from .mohr_coulomb import MohrCoulomb, kept, mohr_coulomb_return, planes, sorted_principal, taken
-from .tangent import stress_and_tangent, symmetric_tangent
+from .tangent import REMNANT, stress_and_tangent, symmetric_tangent
 
 CLOSE = 1e-9  # principal values are one below this share of their size
 
@@ -21,7 +21,7 @@ def _answers(law, case, t):
     """t (3, 3): slopes of the returned principal stresses by the trial's, in a case of the return."""
     for k in range(3):
         for l in range(3):
-            t[k, l] = 1.0 if k == l and case >= 0 else 0.0
+            t[k, l] = 0.0 if k != l else 1.0 if case >= 0 else REMNANT
     if case < 0:
         return
     a, r, b, q = planes(law, case)
@@ -90,7 +90,7 @@ def _tangent(
             _pair(x[k], y[k], z[k], x[l], y[l], z[l], m, 0)
             for r in range(6):
                 for c in range(6):
-                    modulus[j, r, c] += 2.0 * g2 * ratio * m[0, r] * m[0, c]
+                    modulus[j, r, c] += 2.0 * g2 * max(ratio, REMNANT) * m[0, r] * m[0, c]
     return stress_update(
         law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i
     )

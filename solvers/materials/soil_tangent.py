@@ -2,8 +2,8 @@
 
 Drucker-Prager's cone, the cap, Cam-clay and Perzyna's overstress scale the trial deviator and shift the mean stress:
 (m, J) = F(m*, J*), m tension positive. Given the four slopes of F - by implicit differentiation of the law's own
-residuals - the tangent follows for all alike (`isotropic_modulus`). On an apex or a cut-off F is constant and the
-tangent exactly zero: there the stress stays what it is.
+residuals - the tangent follows for all alike (`isotropic_modulus`). On an apex or a cut-off F is constant: a remnant of
+the elastic stiffness is left there, so that a node between such points has a place to be.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from .drucker_prager import DruckerPrager
 from .invariants import elastic_trial, second_invariant
 from .law import dispatched, law_body, stress_update
 from .perzyna import Perzyna, overstress
-from .tangent import stress_and_tangent, symmetric_tangent
+from .tangent import REMNANT, stress_and_tangent, symmetric_tangent
 
 
 @kernel
@@ -29,7 +29,7 @@ def isotropic_modulus(shear, bulk, root, left, slopes, x_xx, x_yy, x_zz, x_xy, x
     xx = shear / (root * root) * (r_r - scale) if root > 0.0 else 0.0
     x1 = bulk * r_m / root if root > 0.0 else 0.0
     ix = shear * m_r / root if root > 0.0 else 0.0
-    soft = shear * scale
+    soft = shear * max(scale, REMNANT)
     for r in range(6):
         nr = x_xx if r == 0 else x_yy if r == 1 else x_zz if r == 2 else x_xy if r == 3 else x_yz if r == 4 else x_zx
         for c in range(6):
@@ -55,7 +55,7 @@ def _return(law, trial, root, dt, state, i):
 
 
 ELASTIC = (1.0, 0.0, 0.0, 1.0)
-CONSTANT = (0.0, 0.0, 0.0, 0.0)
+CONSTANT = (REMNANT, 0.0, 0.0, REMNANT)
 
 
 @law_body(_return, DruckerPrager)

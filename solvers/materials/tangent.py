@@ -12,6 +12,7 @@ from .law import dispatched, law_body, stress_update
 
 STEP = 1e-4  # of the largest strain increment, for central differences
 LEAST = 1e-9  # strain
+REMNANT = 1e-7  # of the elastic stiffness, where the stress answers to no strain at all
 
 
 @dispatched
