@@ -76,6 +76,8 @@ def von_mises_curve(
     if not 0.0 <= beta <= 1.0:
         raise ValueError(f"hardening parameter beta {beta!r} must lie between 0 (kinematic) and 1 (isotropic)")
     if beta < 1.0:
+        if beta == 0.0 and not yield_at(hardening, 0.0)[0] > 0.0:
+            raise ValueError("kinematic hardening needs a yield stress: the surface keeps its size")
         if rate < math.inf:
             raise ValueError("a strain rate raises the curve of isotropic hardening only: beta must be 1")
         return VonMisesMixedCurve(*lame_constants(young, poisson), hardening, beta)
