@@ -35,7 +35,8 @@ FLOWING = {
 
 @pytest.mark.parametrize("name", FLOWING)
 def test_newtons_method_is_quadratic(name: str) -> None:
-    """A block pressed and sheared at its top in one step, so that most of it flows: digits double in each iteration."""
+    """A block pressed and sheared at its top in one step, so that most of it flows: digits double in each iteration,
+    the slope of log r(k + 1) over log r(k) is about 2."""
     law, (press, shear) = FLOWING[name]
     x, nodes, number = bricks(3, 2, 2)
     top = number[-1].ravel()
@@ -48,15 +49,16 @@ def test_newtons_method_is_quadratic(name: str) -> None:
     start = Shape(np.zeros((len(x), 6)))
     _, _, trace = equilibrium(a, start, Target(change, lambda s: np.zeros((len(x), 6))), 1.0, how)
     assert (a.groups[0]._history[0] > 0.0).mean() > 0.5  # type: ignore[attr-defined]
-    r = np.log([value for value in trace.residuals if value > 1e-13])
-    assert (r[-1] - r[-2]) / (r[-2] - r[-3]) > 1.7
+    steps = np.diff(np.log(trace.residuals))
+    orders = steps[1:] / steps[:-1]
+    assert orders[-2:].max() > 1.7  # the last one may end in round-off
     assert a.structure.symmetric == (name == "von Mises")
 
 
 # plates and shells
 
 
-@pytest.mark.parametrize(("layers", "most"), [(5, 0.05), (10, 0.02), (20, 0.005)])
+@pytest.mark.parametrize(("layers", "most"), [(5, 0.06), (10, 0.02), (20, 0.005)])
 def test_plastic_moment_of_a_plate(layers: int, most: float) -> None:
     """A strip bent to 30 times its elastic curvature: M = M_p (1 - 1/3 (1/30)^2) of M_p = sy h^2/4 a unit of width.
 
@@ -118,8 +120,8 @@ def _ring(radial: int, along: int, **more: Any) -> tuple[dict[str, Any], fem.Fac
 
 @pytest.mark.parametrize("how", [{"mean": True}, {"modes": 4}], ids=["mean dilatation", "enhanced"])
 def test_a_thick_cylinder_yields_from_the_bore(how: dict[str, Any], shared: Path) -> None:
-    """Hill's displacements to 0.6 % up to 94 % of the limit pressure; beyond it they grow by the inverse of what is left
-    of it, where his stress along the axis is not von Mises's."""
+    """Hill's displacements to 0.6 % up to 94 % of the limit pressure. Beyond it they grow by the inverse of what is
+    left of it, and his stress along the axis is not von Mises's."""
     rows = np.genfromtxt(shared / "reference/fem/thick_cylinder_plastic.csv", delimiter=",", skip_header=2)
     rows = rows[rows[:, 0] <= 180.0]
     parts, pressure, outside = _ring(20, 12, **how)
@@ -137,7 +139,7 @@ def test_a_thick_cylinder_has_a_limit() -> None:
     _, seen = solve(p, lambda s: s.procedure.factor * 100.0)  # type: ignore[attr-defined]
     limit = 2.0 * STRENGTH / math.sqrt(3.0) * math.log(OUTSIDE / BORE)
     assert seen[-1] == pytest.approx(limit, rel=0.01)
-    assert seen[-1] == pytest.approx(seen[-5], rel=1e-6)
+    assert seen[-1] == pytest.approx(seen[-5], rel=1e-4)
 
 
 # a beam that another program computed, and footings
@@ -181,7 +183,7 @@ def _footing(kind: str, law: Any, inside: int, outside: int, down: int, push: fl
     fixed = held(len(x), (number[0], "x"), (number[-1], "x"), (number[:, 0], "xy"), (loose, "xy"))
     p = problem(x, group(kind, "plane", nodes, law, plane="strain", **more), fixed, motions=(_motion(top, 1, -push),),
                 curves=(ramp(),), steps=((30, 1.0 / 30.0),), iteration=fem.Iteration(most=25))  # fmt: skip
-    solver, seen = solve(p, lambda s: -float(s.reaction[top, 1].sum()))
+    _, seen = solve(p, lambda s: -float(s.reaction[top, 1].sum()))
     assert seen[-1] == pytest.approx(seen[-4], rel=2e-3)  # it flows
     return seen[-1]
 
