@@ -62,7 +62,7 @@ def _turning(bulk, stiff, pressure, before):
 
 @kernel
 def clay_return(law, pressure, deviator, before):
-    """w, p, q, pc and the slope of the residual by w. pressure, deviator: the trial, outside; before: pc."""
+    """w, p, q and pc. pressure, deviator: the trial, outside; before: pc."""
     bulk = law.lame + 2.0 / 3.0 * law.shear
     square = law.ratio * law.ratio
     factor = 6.0 * law.shear / square
@@ -70,7 +70,7 @@ def clay_return(law, pressure, deviator, before):
     low, high = min(0.0, end), max(0.0, end)
     wet = end > 0.0
     w = 0.0
-    p, q, pc, slope = pressure, deviator, before, 0.0
+    p, q, pc = pressure, deviator, before
     value, size = 0.0, 1.0
     for _ in range(ITERATIONS):
         p = pressure - bulk * w
@@ -100,7 +100,7 @@ def clay_return(law, pressure, deviator, before):
         w = new
     if not abs(value) <= 1e-12 * size:  # at the critical state: 2 p - pc is less than round-off
         q = min(deviator, law.ratio * math.sqrt(max(0.0, p * (pc - p))))
-    return w, p, q, pc, slope
+    return w, p, q, pc
 
 
 @law_body(stress_update, CamClay)
@@ -114,7 +114,7 @@ def _update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_x
     pc = law.first * math.exp(law.stiff * state[1, i])
     scale, new, work = 1.0, trial, 0.0
     if 3.0 * root * root / law.ratio**2 > -trial * (pc + trial):
-        w, pressure, deviator, _, _ = clay_return(law, -trial, math.sqrt(3.0) * root, pc)
+        w, pressure, deviator, _ = clay_return(law, -trial, math.sqrt(3.0) * root, pc)
         new = -pressure
         scale = deviator / (math.sqrt(3.0) * root) if root > 0.0 else 0.0
         state[PLASTIC_STRAIN, i] += (1.0 - scale) * root / (math.sqrt(3.0) * law.shear)

@@ -92,24 +92,22 @@ def _clay(law, trial, root, dt, state, i):
         return root, ELASTIC
     three = math.sqrt(3.0)
     bulk = law.lame + 2.0 / 3.0 * law.shear
-    w, p, q, pc, slope = clay_return(law, -trial, three * root, pc)
+    deviator = three * root
+    w, p, q, pc = clay_return(law, -trial, deviator, pc)
     square = law.ratio * law.ratio
     factor = 6.0 * law.shear / square
     c = 2.0 * p - pc
-    multiplier = w / c if c != 0.0 else 0.0
-    shrink = 1.0 + factor * multiplier
-    # the residual's slopes by p* and q*, w held; c depends on p*
-    q_p = q / shrink * factor * 2.0 * multiplier / c if c != 0.0 else 0.0
-    f_p = 2.0 * q / square * q_p + 2.0 * p - pc
-    f_q = 2.0 * q / (square * shrink)
-    w_p, w_q = -f_p / slope, -f_q / slope
-    q_w = -q * factor * (c + w * (2.0 * bulk + law.stiff * pc)) / (c * c * shrink) if c != 0.0 else 0.0
-    return q / three, (
-        1.0 - bulk * w_p,
-        bulk * w_q * three,
-        -(q_p + q_w * w_p) / three,
-        1.0 / shrink + q_w * w_q,
-    )
+    # w - m c = 0 and the ellipse, for w and the multiplier m: at the critical state c is 0 and m is not w/c
+    m = (deviator / q - 1.0) / factor if q > 0.0 else w / c
+    shrink = 1.0 + factor * m
+    a_w, a_m, a_p = 1.0 + m * (2.0 * bulk + law.stiff * pc), -c, -2.0 * m
+    b_w, b_m, b_p = -bulk * c - p * law.stiff * pc, -2.0 * q * q / square * factor / shrink, c
+    b_q = 2.0 * q / (square * shrink)
+    below = a_w * b_m - a_m * b_w
+    w_p, m_p = (a_m * b_p - a_p * b_m) / below, (b_w * a_p - a_w * b_p) / below
+    w_q, m_q = a_m * b_q / below, -a_w * b_q / below
+    turn = q * factor / shrink
+    return q / three, (1.0 - bulk * w_p, bulk * w_q * three, turn * m_p / three, 1.0 / shrink - turn * m_q)
 
 
 @law_body(_return, Perzyna)

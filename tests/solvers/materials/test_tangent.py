@@ -14,6 +14,7 @@ from zrno.solvers.materials.tangent import stress_and_tangent, symmetric_tangent
 
 E, NU = 1000.0, 0.3
 SIZE = 0.01  # of the strain increments
+ANEW = 150  # states of a path; a longer one would dilate until hardly any step flows
 SAND = laws.CapHardening(0.066, 0.67, 0.189)
 POINTS = laws.table([[0.0, 1.0], [0.02, 1.6], [0.1, 1.8], [0.5, 1.7]], 384.0)
 
@@ -94,6 +95,9 @@ def _along(step: Any, differences: Any) -> Any:
         s, out = np.zeros(6), np.zeros(6)
         modulus, coarse, fine = np.zeros((1, 6, 6)), np.zeros((6, 6)), np.zeros((6, 6))
         for m in range(len(strain)):
+            if m % ANEW == 0:
+                s[:] = 0.0
+                state[:] = 0.0
             e = strain[m]
             size = 1e-3 * np.abs(e).max()
             differences(law, e, s, state, kept, size, coarse)
@@ -112,6 +116,7 @@ def _strain(count: int) -> np.ndarray:
     rng = np.random.default_rng(11)
     strain = rng.normal(size=(count, 6)) * SIZE * 10.0 ** rng.uniform(-1.5, 0.0, size=(count, 1))
     volume = 2.0 * SIZE * np.sin(np.cumsum(rng.normal(size=count)) * 0.3) - SIZE
+    volume[::ANEW] = 0.0
     strain[:, :3] += (np.diff(volume, prepend=0.0) - strain[:, :3].sum(axis=1))[:, None] / 3.0
     return strain
 
@@ -136,7 +141,7 @@ def _check(name: str, count: int, along: Any) -> None:
 @pytest.mark.parametrize("name", LAWS)
 def test_the_tangent_is_the_derivative_of_the_update(name: str) -> None:
     """Not compiled: the bodies are plain Python."""
-    _check(name, 150, _along(step, differences))
+    _check(name, ANEW, _along(step, differences))
 
 
 @pytest.mark.slow
