@@ -9,8 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..jit import kernel
+from .invariants import elastic_trial, second_invariant
 from .law import law_body, stress_update
-from .mohr_coulomb import MohrCoulomb, kept, mohr_coulomb_return, planes, sorted_principal, taken
+from .mohr_coulomb import MohrCoulomb, kept, mohr_coulomb_return, planes, sorted_principal, taken, well_inside
 from .tangent import REMNANT, stress_and_tangent, symmetric_tangent
 
 CLOSE = 1e-9  # principal values are one below this share of their size
@@ -47,12 +48,18 @@ def _tangent(
     scratch, modulus, j,
 ):  # fmt: skip
     g2 = 2.0 * law.shear
-    lame_part = law.lame * (de_xx + de_yy + de_zz)
-    p1, p2, p3, ax, bx, cx, ay, by, cy, az, bz, cz = sorted_principal(
-        s_xx + lame_part + g2 * de_xx, s_yy + lame_part + g2 * de_yy, s_zz + lame_part + g2 * de_zz,
-        s_xy + g2 * de_xy, s_yz + g2 * de_yz, s_zx + g2 * de_zx,
-    )  # fmt: skip
-    elastic = kept(law, p1, p2, p3, 0.0)
+    volumetric, mean, x_xx, x_yy, x_zz, x_xy, x_yz, x_zx = elastic_trial(
+        law.shear, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx
+    )
+    mean += (law.lame + 2.0 / 3.0 * law.shear) * volumetric
+    p1, p2, p3 = mean, mean, mean
+    ax, bx, cx, ay, by, cy, az, bz, cz = 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0
+    elastic = well_inside(law, mean, second_invariant(x_xx, x_yy, x_zz, x_xy, x_yz, x_zx))
+    if not elastic:
+        p1, p2, p3, ax, bx, cx, ay, by, cy, az, bz, cz = sorted_principal(
+            x_xx + mean, x_yy + mean, x_zz + mean, x_xy, x_yz, x_zx
+        )
+        elastic = kept(law, p1, p2, p3, 0.0)
     n1, n2, n3, case = p1, p2, p3, 9
     if not elastic:
         n1, n2, n3, case = mohr_coulomb_return(law, p1, p2, p3)

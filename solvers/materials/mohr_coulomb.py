@@ -158,6 +158,15 @@ def mohr_coulomb_return(law, p1, p2, p3):
     return best1, best2, best3, -1
 
 
+@kernel
+def well_inside(law, mean, square):
+    """Within the inner cone J sqrt(3 + sin^2 phi) <= c cos phi - mean sin phi, and J 2/sqrt 3 <= T - mean; J^2: square."""
+    room = 0.5 * law.cohesive - mean * law.sine
+    left = law.tension - mean
+    inner = room >= 0.0 and square * (3.0 + law.sine**2) <= 3.0 * room * room
+    return inner and left >= 0.0 and 4.0 * square <= 3.0 * left * left
+
+
 @law_body(stress_update, MohrCoulomb)
 def _update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i):
     volumetric, mean, x_xx, x_yy, x_zz, x_xy, x_yz, x_zx = elastic_trial(
@@ -165,11 +174,7 @@ def _update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_x
     )
     mean += (law.lame + 2.0 / 3.0 * law.shear) * volumetric
     square = second_invariant(x_xx, x_yy, x_zz, x_xy, x_yz, x_zx)
-    # within the inner cone J sqrt(3 + sin^2 phi) <= c cos phi - mean sin phi, and J 2/sqrt 3 <= T - mean
-    room = 0.5 * law.cohesive - mean * law.sine
-    left = law.tension - mean
-    inner = room >= 0.0 and square * (3.0 + law.sine**2) <= 3.0 * room * room
-    if inner and left >= 0.0 and 4.0 * square <= 3.0 * left * left:
+    if well_inside(law, mean, square):
         return x_xx + mean, x_yy + mean, x_zz + mean, x_xy, x_yz, x_zx, 0.0
     n_xx, n_yy, n_zz, n_xy, n_yz, n_zx = _principal_return(
         law, x_xx + mean, x_yy + mean, x_zz + mean, x_xy, x_yz, x_zx, state, i
