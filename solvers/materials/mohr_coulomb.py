@@ -160,7 +160,7 @@ def mohr_coulomb_return(law, p1, p2, p3):
 
 @kernel
 def well_inside(law, mean, square):
-    """Within the inner cone J sqrt(3 + sin^2 phi) <= c cos phi - mean sin phi, and J 2/sqrt 3 <= T - mean; J^2: square."""
+    """Within the inner cone J sqrt(3 + sin^2 phi) <= c cos phi - mean sin phi, and J 2/sqrt 3 <= T - mean."""
     room = 0.5 * law.cohesive - mean * law.sine
     left = law.tension - mean
     inner = room >= 0.0 and square * (3.0 + law.sine**2) <= 3.0 * room * room
