@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 
 from zrno.pipelines.fem_method import Fem
-from zrno.pipelines.laws import law_of
+from zrno.pipelines.laws import structural_law_of
 from zrno.solvers import fem
 from zrno.solvers.errors import Unsupported
+from zrno.solvers.materials import axes_of
 from zrno.translators.control import FemControl
 from zrno.translators.elements import TABLE
 from zrno.translators.model import ElementBlock, FaceLoad, Model, NodalLoad, Section
@@ -89,7 +91,7 @@ def refusals(model: Model, path: str) -> list[Fault]:
             continue
         at = material.source.line if material.source else 1
         try:
-            law_of(material, None, model.curves)
+            structural_law_of(material, model.curves, None if section is None else _axes(section))
         except (Unsupported, ValueError) as error:
             faults.append(Fault(path, at, 1, f"material {material.id}: {error}", "", "a law that is computed"))
     for block in model.blocks:
@@ -142,7 +144,7 @@ def _group(model: Model, block: ElementBlock, rows: Any, part: int, method: Fem)
     gauss = tuple(int(native.get(f"NGAUS{axis}", 0)) for axis in "XYZ")
     ids = block.ids[rows]
     solid = family == "solid"
-    law = law_of(material, None, model.curves)
+    law = structural_law_of(material, model.curves, _axes(section))
     thickness = data.get("thickness")
     if thickness is None and "thickness" in parameters:
         thickness = np.full(len(ids), parameters["thickness"])
@@ -167,6 +169,17 @@ def _group(model: Model, block: ElementBlock, rows: Any, part: int, method: Fem)
         birth=data.get("birth"),
         death=data.get("death"),
     )
+
+
+def _axes(section: Section) -> Any:
+    """Axes of the material of a group: of solids by its card, of plane elements by its angle BETA; None without."""
+    if "axes" in section.native and any(section.native["axes"]):
+        axes = section.native["axes"]
+        return axes_of(axes[:3], axes[3:])
+    if section.kind == "plane" and (angle := math.radians(section.native.get("BETA", 0.0))):
+        c, s = math.cos(angle), math.sin(angle)
+        return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    return None
 
 
 def _modes(kind: str, asked: int) -> int:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from typing import Any
 
 from zrno.pipelines.method import Soil
 from zrno.solvers import materials as laws
@@ -18,6 +19,15 @@ from zrno.translators.laws import EQUATIONS_OF_STATE, LAWS, bulk_and_shear
 from zrno.translators.model import Curve, Eos, Floats, Material
 
 Values = Mapping[str, float]
+
+
+def structural_law_of(material: Material, curves: Mapping[int, Curve], axes: Any) -> Law:
+    """As `law_of`, of finite elements. axes: (3, 3) directions of an orthotropic law's, or None: the coordinates'."""
+    if material.law != "orthotropic":
+        return law_of(material, None, curves)
+    p = {name: material.parameters.get(name, math.nan) for name in LAWS["orthotropic"].parameters}
+    values = list(p.values())
+    return laws.orthotropic(values[:3], values[3:6], values[6:], axes)
 
 
 def law_of(material: Material, eos: Eos | None, curves: Mapping[int, Curve]) -> Law:
@@ -100,18 +110,22 @@ def _elastic(p: Values, points: Floats | None, eos: laws.Eos | None) -> Law:
 def _von_mises(p: Values, points: Floats | None, eos: laws.Eos | None) -> Law:
     law: Law = laws.von_mises(p["E"], p["nu"], p["yield_stress"], p["tangent_modulus"], p["beta"])
     if points is not None or p["rate_C"]:
-        if p["beta"] != 1.0 and (points is not None or p["tangent_modulus"]):
-            raise Unsupported("kinematic hardening with a table or a strain rate is not computed yet")
         modulus = p["E"] * p["tangent_modulus"] / (p["E"] - p["tangent_modulus"])
         hardening = _hardening(p, points, bulk_and_shear(p["E"], p["nu"])[1], modulus)
-        rate = p["rate_C"] or math.inf
-        law = laws.von_mises_curve(p["E"], p["nu"], hardening, rate=rate, exponent=p["rate_p"] or 1.0)
+        rate, beta = p["rate_C"] or math.inf, p["beta"]
+        if rate < math.inf and beta != 1.0:
+            if points is not None or p["tangent_modulus"]:
+                raise Unsupported("kinematic hardening with a strain rate is not computed yet")
+            beta = 1.0  # nothing hardens
+        law = laws.von_mises_curve(p["E"], p["nu"], hardening, beta, rate=rate, exponent=p["rate_p"] or 1.0)
     return laws.failing(law, p["failure_strain"]) if p["failure_strain"] else law
 
 
 def _von_mises_power(p: Values, points: Floats | None, eos: laws.Eos | None) -> Law:
+    if points is not None:
+        return laws.von_mises_curve(p["E"], p["nu"], laws.table(points, bulk_and_shear(p["E"], p["nu"])[1]), p["M"])
     if p["n"] != 1.0 and p["Cy"]:
-        raise Unsupported(f"hardening with exponent {p['n']:g} is not computed yet; a table is")
+        return laws.von_mises_curve(p["E"], p["nu"], laws.power(p["yield_stress"], p["Cy"], p["n"]), p["M"])
     tangent = p["E"] * p["Cy"] / (p["E"] + p["Cy"])
     return laws.von_mises(p["E"], p["nu"], p["yield_stress"], tangent, p["M"])
 

@@ -6,6 +6,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from ..materials.tangent import symmetric_tangent
 from . import linear, structure
 from .elements.points import elastic_modulus
 from .groups import make_groups
@@ -46,7 +47,8 @@ class Assembly:
 
     def __init__(self, problem: Problem, *, threads: int = 1) -> None:
         self._moments = moment_nodes(problem)
-        symmetric = not len(self._moments)
+        laws = [e.law for e in problem.elements if e.law is not None]
+        symmetric = not len(self._moments) and all(symmetric_tangent(law) for law in laws)
         self.problem = problem
         self.threads = threads
         self.n = len(problem.x)

@@ -22,7 +22,9 @@ def vibrations(assembly: Assembly, count: int, *, lumped: bool = False) -> tuple
     diagonal, mass = assembly.mass(lumped=lumped)
     mass = assembly.diagonal_values(diagonal) if mass is None else mass
     s, t = assembly.structure, assembly.transform
-    k, m = (_full(sp.csr_matrix((values, s.columns, s.starts), shape=(s.count,) * 2)) for values in (stiffness, mass))
+    k, m = (sp.csr_matrix((values, s.columns, s.starts), shape=(s.count,) * 2) for values in (stiffness, mass))
+    if s.symmetric:
+        k, m = _full(k), _full(m)
     if t is not None:
         k, m = (t.T @ k @ t).tocsr(), (t.T @ m @ t).tocsr()
     n = k.shape[0]

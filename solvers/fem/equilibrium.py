@@ -81,7 +81,8 @@ def equilibrium(
     for iteration in range(how.most if guess is None else min(how.most, GUESSED)):
         if stale:
             if iteration or guess is not None:
-                _evaluate(assembly, shape, start, dt, stiff=True, moved=None)
+                internal, _ = _evaluate(assembly, shape, start, dt, stiff=True, moved=None)
+                residual = _residual(assembly, target, shape, loads, internal, None)
             definite = _factor(assembly, target, definite=definite)
             trace.factorisations += 1
         step = assembly.expand(assembly.solve(residual))

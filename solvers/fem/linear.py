@@ -95,6 +95,8 @@ class System:
 
     def factor(self, kind: str | None = None) -> None:
         """Factor the values that now stand; raises Singular. kind: as what, where that changes."""
+        if not np.isfinite(self.values.sum()):  # PARDISO's memory does not survive it
+            raise Singular(-1, "the matrix is not finite")
         if kind is not None and kind != self.kind:
             self.kind, self._factors = kind, None
         if self._factors is None:

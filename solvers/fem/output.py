@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..frame import Arrays, Cells, Frame
-from ..materials import Elastic
+from ..materials import Elastic, Orthotropic
 from .arc import PathFollowing
 from .problem import SMALL, Problem
 from .procedures import Vibrations
@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 def is_linear(problem: Problem) -> bool:
     """Whether one factorisation answers all steps: linear laws, small displacements, loads that do not follow."""
     return (
-        all(isinstance(e.law, Elastic | None) and e.geometry == SMALL for e in problem.elements)
+        all(isinstance(e.law, Elastic | Orthotropic | None) and e.geometry == SMALL for e in problem.elements)
         and not any(load.follows for load in problem.face_loads)
         and not any(m.incremental for m in problem.motions)
     )

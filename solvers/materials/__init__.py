@@ -5,6 +5,8 @@ The table of laws, what each is a model of and what it costs, is in README.md be
 
 from __future__ import annotations
 
+from . import hexagon_tangent, metal_tangent, soil_tangent  # noqa: F401  # they register the bodies of `tangent`
+from .cam_clay import CamClay, cam_clay
 from .cap import Cap, KinematicCap, cap
 from .cap_return import CapHardening, CapHardeningGeneral
 from .drucker_prager import DruckerPrager, drucker_prager, drucker_prager_soil
@@ -12,15 +14,25 @@ from .elastic import Elastic
 from .eos import Gruneisen, LinearPolynomial, MieGruneisen, Monaghan, PerfectGas, Tait
 from .failing import Failing, failing
 from .fluid import Fluid, fluid
-from .hardening import Linear, Table, table
+from .hardening import Linear, Power, Table, power, ramberg_osgood, table
 from .hydro import Hydro, hydro
 from .law import OPEN, PLASTIC_STRAIN, constant_wave, sound_speed, state_rows
 from .mohr_coulomb import MohrCoulomb, mohr_coulomb
-from .von_mises import VonMisesCurve, VonMisesIsotropic, VonMisesMixed, von_mises, von_mises_curve
+from .orthotropic import Orthotropic, axes_of, orthotropic
+from .perzyna import Perzyna, perzyna, perzyna_yield
+from .von_mises import (
+    VonMisesCurve,
+    VonMisesIsotropic,
+    VonMisesMixed,
+    VonMisesMixedCurve,
+    von_mises,
+    von_mises_curve,
+)
 
 Eos = Gruneisen | LinearPolynomial | MieGruneisen | Monaghan | PerfectGas | Tait
 Law = (
-    Cap
+    CamClay
+    | Cap
     | DruckerPrager
     | Elastic
     | Failing
@@ -28,13 +40,17 @@ Law = (
     | Hydro
     | KinematicCap
     | MohrCoulomb
+    | Orthotropic
+    | Perzyna
     | VonMisesCurve
     | VonMisesIsotropic
     | VonMisesMixed
+    | VonMisesMixedCurve
 )
 
 _FAMILIES: dict[type, str] = {
-    Fluid: "fluid", Cap: "grain", KinematicCap: "grain", DruckerPrager: "grain", MohrCoulomb: "grain",
+    Fluid: "fluid", CamClay: "grain", Cap: "grain", KinematicCap: "grain", DruckerPrager: "grain",
+    MohrCoulomb: "grain",
 }  # fmt: skip
 
 
@@ -51,6 +67,7 @@ def cohesive(law: Law) -> bool:
 __all__ = [
     "OPEN",
     "PLASTIC_STRAIN",
+    "CamClay",
     "Cap",
     "CapHardening",
     "CapHardeningGeneral",
@@ -68,12 +85,18 @@ __all__ = [
     "MieGruneisen",
     "MohrCoulomb",
     "Monaghan",
+    "Orthotropic",
     "PerfectGas",
+    "Perzyna",
+    "Power",
     "Table",
     "Tait",
     "VonMisesCurve",
     "VonMisesIsotropic",
     "VonMisesMixed",
+    "VonMisesMixedCurve",
+    "axes_of",
+    "cam_clay",
     "cap",
     "cohesive",
     "constant_wave",
@@ -84,6 +107,11 @@ __all__ = [
     "fluid",
     "hydro",
     "mohr_coulomb",
+    "orthotropic",
+    "perzyna",
+    "perzyna_yield",
+    "power",
+    "ramberg_osgood",
     "sound_speed",
     "state_rows",
     "table",

@@ -239,3 +239,57 @@ def _on_ellipse(law, bulk, shear, first, root, centre):
     radius = math.sqrt(d * d + square * left * left)
     scale = size / radius if radius > 0.0 else 0.0
     return x + d * scale, left * scale, x
+
+
+@kernel
+def cap_slopes(law, shear, first, root, centre):
+    """J of the new stress, and dI/dI*, dI/dJ*, dJ/dI*, dJ/dJ*; arguments as of `cap_return`."""
+    if first < law.tension:
+        return 0.0, 0.0, 0.0, 0.0, 0.0
+    bulk = law.lame + 2.0 / 3.0 * law.shear
+    new, left, after = cap_return(law, shear, first, root, centre)
+    if first > centre and law.ratio > 0.0:
+        return _ellipse_slopes(law, bulk, shear, first, root, left, centre, after)
+    strength, slope = envelope(law, new)
+    by_first, by_root = 0.0, 0.0
+    if new == after and (first > centre or after < centre):  # the corner: flat caps, and caps that give way
+        if new > max(first, 0.0) or first > centre:
+            by_first = 1.0 / (1.0 + 3.0 * bulk * _compacted(law, new)[1])
+        elif first >= 0.0:
+            by_first = 1.0
+    elif new < centre:
+        scale = 9.0 * bulk / shear
+        curvature = -law.decay * (slope - law.theta)
+        by_first = 1.0 / (1.0 + scale * (slope * slope - (root - strength) * curvature))
+        by_root = scale * slope * by_first
+    if left == root:
+        return left, by_first, by_root, 0.0, 1.0
+    return left, by_first, by_root, slope * by_first, slope * by_root
+
+
+@kernel
+def _ellipse_slopes(law, bulk, shear, first, root, left, centre, after):
+    _, slope = envelope(law, after)
+    epv, rise = _compacted(law, after)
+    flow = max(0.0, epv - _compacted(law, centre)[0])
+    square = law.ratio * law.ratio
+    d = first - 3.0 * bulk * flow - after
+    fall = -3.0 * bulk * rise - 1.0
+    if not d > 0.0:
+        return left, 0.0, 0.0, 0.0, 0.0
+    push = 2.0 * shear * square
+    shrink = 1.0 + push * flow / (6.0 * d)
+    growth = (rise * d - flow * fall) / (6.0 * d * d)
+    j_after, j_first = -left / shrink * push * growth, left / shrink * push * flow / (6.0 * d * d)
+    radius = math.sqrt(d * d + square * left * left)
+    by_after = (d * fall + square * left * j_after) / radius - law.ratio * slope
+    by_first = (d + square * left * j_first) / radius
+    by_root = square * left / (shrink * radius)
+    l_first, l_root = -by_first / by_after, -by_root / by_after
+    return (
+        left,
+        1.0 - 3.0 * bulk * rise * l_first,
+        -3.0 * bulk * rise * l_root,
+        j_first + j_after * l_first,
+        1.0 / shrink + j_after * l_root,
+    )

@@ -59,7 +59,7 @@ def mohr_coulomb(
 
 
 @kernel
-def _kept(law, p1, p2, p3, slack):
+def kept(law, p1, p2, p3, slack):
     """Whether all planes are kept."""
     top = max(p1, p2, p3)
     low = min(p1, p2, p3)
@@ -67,7 +67,7 @@ def _kept(law, p1, p2, p3, slack):
 
 
 @kernel
-def _flow(law, a1, a2, a3, r1, r2, r3):
+def taken(law, a1, a2, a3, r1, r2, r3):
     """a . D r: what a multiplier of the flow r takes off the plane a; D is Hooke's."""
     return law.lame * (a1 + a2 + a3) * (r1 + r2 + r3) + 2.0 * law.shear * (a1 * r1 + a2 * r2 + a3 * r3)
 
@@ -75,10 +75,10 @@ def _flow(law, a1, a2, a3, r1, r2, r3):
 @kernel
 def _pair(law, p1, p2, p3, a, f_a, b, f_b, r, q):
     """The return to the planes a and b by the flows r and q, and the lesser multiplier; f: the planes' excess."""
-    aa = _flow(law, a[0], a[1], a[2], r[0], r[1], r[2])
-    ab = _flow(law, a[0], a[1], a[2], q[0], q[1], q[2])
-    ba = _flow(law, b[0], b[1], b[2], r[0], r[1], r[2])
-    bb = _flow(law, b[0], b[1], b[2], q[0], q[1], q[2])
+    aa = taken(law, a[0], a[1], a[2], r[0], r[1], r[2])
+    ab = taken(law, a[0], a[1], a[2], q[0], q[1], q[2])
+    ba = taken(law, b[0], b[1], b[2], r[0], r[1], r[2])
+    bb = taken(law, b[0], b[1], b[2], q[0], q[1], q[2])
     below = aa * bb - ab * ba
     m = (f_a * bb - f_b * ab) / below
     n = (f_b * aa - f_a * ba) / below
@@ -93,48 +93,55 @@ def _pair(law, p1, p2, p3, a, f_a, b, f_b, r, q):
 
 
 @kernel
-def mohr_coulomb_return(law, p1, p2, p3):
-    """The principal stresses on the surfaces; p1 >= p2 >= p3 is the trial, outside."""
-    slack = 1e-13 * (abs(p1) + abs(p3) + law.cohesive)
+def planes(law, case):
+    """What a case returns to: the first plane and its flow, the second plane and its flow (0 in cases 0 and 1)."""
     up, down = 1.0 + law.sine, 1.0 - law.sine
     rise, fall = 1.0 + law.flow, 1.0 - law.flow
     none = (0.0, 0.0, 0.0)
+    e1 = (1.0, 0.0, 0.0)
+    e2 = (0.0, 1.0, 0.0)
+    a, r = (up, 0.0, -down), (rise, 0.0, -fall)
+    if case == 1 or case == 4:
+        a, r = e1, e1
+    b, q = none, none
+    if case == 2:
+        b, q = (up, -down, 0.0), (rise, -fall, 0.0)
+    elif case == 3:
+        b, q = (0.0, up, -down), (0.0, rise, -fall)
+    elif case == 4:
+        b, q = e2, e2
+    elif case == 5:
+        b, q = e1, e1
+    return a, r, b, q
+
+
+@kernel
+def mohr_coulomb_return(law, p1, p2, p3):
+    """The principal stresses on the surfaces, and the case, 0..5 (`planes`) or -1 for a corner; p1 >= p2 >= p3 is the
+    trial, outside."""
+    slack = 1e-13 * (abs(p1) + abs(p3) + law.cohesive)
+    up, down = 1.0 + law.sine, 1.0 - law.sine
     f13 = up * p1 - down * p3 - law.cohesive
     f12 = up * p1 - down * p2 - law.cohesive
     f23 = up * p2 - down * p3 - law.cohesive
     t1 = p1 - law.tension
     t2 = p2 - law.tension
-    a13, r13 = (up, 0.0, -down), (rise, 0.0, -fall)
-    a12, r12 = (up, -down, 0.0), (rise, -fall, 0.0)
-    a23, r23 = (0.0, up, -down), (0.0, rise, -fall)
-    e1 = (1.0, 0.0, 0.0)
-    e2 = (0.0, 1.0, 0.0)
     finite = law.tension < math.inf
     for case in range(6):
-        a, f_a, r = a13, f13, r13
-        b, f_b, q = none, 0.0, none
-        if case == 1:
-            a, f_a, r = e1, t1, e1
-        elif case == 2:
-            b, f_b, q = a12, f12, r12
-        elif case == 3:
-            b, f_b, q = a23, f23, r23
-        elif case == 4:
-            a, f_a, r = e1, t1, e1
-            b, f_b, q = e2, t2, e2
-        elif case == 5:
-            b, f_b, q = e1, t1, e1
+        a, r, b, q = planes(law, case)
+        f_a = t1 if case == 1 or case == 4 else f13
+        f_b = f12 if case == 2 else f23 if case == 3 else t2 if case == 4 else t1
         if not finite and (case == 1 or case >= 4):
             continue
         if case < 2:
-            m = f_a / _flow(law, a[0], a[1], a[2], r[0], r[1], r[2])
+            m = f_a / taken(law, a[0], a[1], a[2], r[0], r[1], r[2])
             spread = law.lame * m * (r[0] + r[1] + r[2])
             g2 = 2.0 * law.shear * m
             n1, n2, n3 = p1 - spread - g2 * r[0], p2 - spread - g2 * r[1], p3 - spread - g2 * r[2]
         else:
             n1, n2, n3, m = _pair(law, p1, p2, p3, a, f_a, b, f_b, r, q)
-        if m >= 0.0 and _kept(law, n1, n2, n3, slack):
-            return n1, n2, n3
+        if m >= 0.0 and kept(law, n1, n2, n3, slack):
+            return n1, n2, n3, case
     low = min(law.tension, (up * law.tension - law.cohesive) / down)
     best1, best2, best3 = p1, p2, p3  # a NaN stays one
     least = math.inf
@@ -148,7 +155,16 @@ def mohr_coulomb_return(law, p1, p2, p3):
         if energy < least:
             least = energy
             best1, best2, best3 = law.tension, n2, n3
-    return best1, best2, best3
+    return best1, best2, best3, -1
+
+
+@kernel
+def well_inside(law, mean, square):
+    """Within the inner cone J sqrt(3 + sin^2 phi) <= c cos phi - mean sin phi, and J 2/sqrt 3 <= T - mean."""
+    room = 0.5 * law.cohesive - mean * law.sine
+    left = law.tension - mean
+    inner = room >= 0.0 and square * (3.0 + law.sine**2) <= 3.0 * room * room
+    return inner and left >= 0.0 and 4.0 * square <= 3.0 * left * left
 
 
 @law_body(stress_update, MohrCoulomb)
@@ -158,11 +174,7 @@ def _update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_x
     )
     mean += (law.lame + 2.0 / 3.0 * law.shear) * volumetric
     square = second_invariant(x_xx, x_yy, x_zz, x_xy, x_yz, x_zx)
-    # within the inner cone J sqrt(3 + sin^2 phi) <= c cos phi - mean sin phi, and J 2/sqrt 3 <= T - mean
-    room = 0.5 * law.cohesive - mean * law.sine
-    left = law.tension - mean
-    kept = room >= 0.0 and square * (3.0 + law.sine**2) <= 3.0 * room * room
-    if kept and left >= 0.0 and 4.0 * square <= 3.0 * left * left:
+    if well_inside(law, mean, square):
         return x_xx + mean, x_yy + mean, x_zz + mean, x_xy, x_yz, x_zx, 0.0
     n_xx, n_yy, n_zz, n_xy, n_yz, n_zx = _principal_return(
         law, x_xx + mean, x_yy + mean, x_zz + mean, x_xy, x_yz, x_zx, state, i
@@ -177,7 +189,8 @@ def _update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_x
 
 
 @kernel
-def _principal_return(law, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, state, i):
+def sorted_principal(s_xx, s_yy, s_zz, s_xy, s_yz, s_zx):
+    """As `principal`, the greatest value first."""
     p, q, r, ax, bx, cx, ay, by, cy, az, bz, cz = principal(s_xx, s_yy, s_zz, s_xy, s_yz, s_zx)
     if p < q:
         p, q, ax, bx, ay, by, az, bz = q, p, bx, ax, by, ay, bz, az
@@ -185,9 +198,15 @@ def _principal_return(law, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, state, i):
         q, r, bx, cx, by, cy, bz, cz = r, q, cx, bx, cy, by, cz, bz
     if p < q:
         p, q, ax, bx, ay, by, az, bz = q, p, bx, ax, by, ay, bz, az
-    if _kept(law, p, q, r, 0.0):
+    return p, q, r, ax, bx, cx, ay, by, cy, az, bz, cz
+
+
+@kernel
+def _principal_return(law, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, state, i):
+    p, q, r, ax, bx, cx, ay, by, cy, az, bz, cz = sorted_principal(s_xx, s_yy, s_zz, s_xy, s_yz, s_zx)
+    if kept(law, p, q, r, 0.0):
         return s_xx, s_yy, s_zz, s_xy, s_yz, s_zx
-    n, m, l = mohr_coulomb_return(law, p, q, r)
+    n, m, l, _ = mohr_coulomb_return(law, p, q, r)
     d1, d2, d3 = p - n, q - m, r - l
     square = (d1 - d2) ** 2 + (d2 - d3) ** 2 + (d3 - d1) ** 2
     state[PLASTIC_STRAIN, i] += math.sqrt(2.0 * square) / (6.0 * law.shear)

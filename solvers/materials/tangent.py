@@ -1,20 +1,18 @@
 """The consistent tangent of a law's stress update, for implicit solvers.
 
 The tangent is of the update itself, not of the rate equations, so that Newton's method converges quadratically (Simo &
-Taylor 1985). A law without a body of its own is differentiated by central differences of its update.
+Taylor 1985). A law without a body of its own is differentiated by central differences of its update. Bodies stand in
+`metal_tangent` and `soil_tangent`.
 """
 
 from __future__ import annotations
 
-import math
-
 from .elastic import Elastic
-from .invariants import THIRD
-from .law import PLASTIC_STRAIN, dispatched, law_body, stress_update
-from .von_mises import VonMisesIsotropic, VonMisesMixed
+from .law import dispatched, law_body, stress_update
 
 STEP = 1e-4  # of the largest strain increment, for central differences
 LEAST = 1e-9  # strain
+REMNANT = 1e-7  # of the elastic stiffness, where the stress answers to no strain at all
 
 
 @dispatched
@@ -63,6 +61,12 @@ def stress_and_tangent(
     )
 
 
+@dispatched
+def symmetric_tangent(law):
+    """Whether the tangent is symmetric in all states: a solver may then keep half of the matrix."""
+    return True
+
+
 @law_body(stress_and_tangent, Elastic)
 def _elastic(
     law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i,
@@ -79,51 +83,3 @@ def _elastic(
     return stress_update(
         law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i
     )
-
-
-@law_body(stress_and_tangent, VonMisesIsotropic, VonMisesMixed)
-def _von_mises(
-    law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i,
-    scratch, modulus, j,
-):  # fmt: skip
-    """Simo & Taylor 1985: K 1x1 + 2 G a I' - 2 G b n x n."""
-    before = state[PLASTIC_STRAIN, i]
-    shifted = state.shape[0] > 6  # a back stress
-    a0 = state[1, i] if shifted else 0.0
-    a1 = state[2, i] if shifted else 0.0
-    a2 = state[3, i] if shifted else 0.0
-    a3 = state[4, i] if shifted else 0.0
-    a4 = state[5, i] if shifted else 0.0
-    a5 = state[6, i] if shifted else 0.0
-    out = stress_update(
-        law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i
-    )
-    g2 = 2.0 * law.shear
-    flow = state[PLASTIC_STRAIN, i] - before
-    scale, along = 1.0, 0.0
-    n0 = n1 = n2 = n3 = n4 = n5 = 0.0
-    if flow > 0.0:
-        de_m = (de_xx + de_yy + de_zz) * THIRD
-        mean = (s_xx + s_yy + s_zz) * THIRD
-        n0 = s_xx - mean + g2 * (de_xx - de_m) - a0
-        n1 = s_yy - mean + g2 * (de_yy - de_m) - a1
-        n2 = s_zz - mean + g2 * (de_zz - de_m) - a2
-        n3 = s_xy + g2 * de_xy - a3
-        n4 = s_yz + g2 * de_yz - a4
-        n5 = s_zx + g2 * de_zx - a5
-        size = math.sqrt(n0 * n0 + n1 * n1 + n2 * n2 + 2.0 * (n3 * n3 + n4 * n4 + n5 * n5))
-        scale = 1.0 - 1.5 * g2 * flow / (math.sqrt(1.5) * size)
-        along = g2 * (1.5 * g2 / (1.5 * g2 + law.hardening) - (1.0 - scale)) / (size * size)
-    bulk = law.lame + g2 * THIRD
-    shear = g2 * scale
-    for r in range(6):
-        nr = n0 if r == 0 else n1 if r == 1 else n2 if r == 2 else n3 if r == 3 else n4 if r == 4 else n5
-        for c in range(6):
-            nc = n0 if c == 0 else n1 if c == 1 else n2 if c == 2 else n3 if c == 3 else n4 if c == 4 else n5
-            value = -along * nr * nc
-            if r < 3 and c < 3:
-                value += bulk - shear * THIRD
-            if r == c:
-                value += shear if r < 3 else 0.5 * shear
-            modulus[j, r, c] = value
-    return out

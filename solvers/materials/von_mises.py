@@ -5,8 +5,9 @@ H = E ET / (E - ET). beta = 1 isotropic, 0 kinematic. Steps of the return:
 1. trial deviator s* = s + 2 G de', relative to the back stress: xi = s* - a, xi_eq = sqrt(3/2) |xi|
 2. dep = (xi_eq - Y) / (3 G + H) if positive
 3. s = s* - (3 G dep / xi_eq) xi,  a += ((1 - beta) H dep / xi_eq) xi,  Y += beta H dep
-With a table or a rate (`VonMisesCurve`) the hardening is isotropic and the return as exact; Cowper & Symonds 1957
-raise the whole curve by 1 + (rate/C)^(1/p), rate = sqrt(2/3 e':e') of the whole deviatoric strain.
+With a table or a power (`VonMisesCurve`, `VonMisesMixedCurve`) H is the curve's own slope and the return as exact.
+Cowper & Symonds 1957 raise the whole curve of isotropic hardening by 1 + (rate/C)^(1/p), rate = sqrt(2/3 e':e') of the
+whole deviatoric strain.
 The pressure stays elastic. One increment is exact for radial paths. Without kinematic hardening there is no back stress
 in the state at all (`VonMisesIsotropic`): a scene pays for what it uses.
 """
@@ -16,7 +17,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from .hardening import Linear, Table, radial_return
+from .hardening import Linear, Power, Table, radial_return, yield_at
 from .invariants import THIRD, elastic_trial, second_invariant
 from .law import PLASTIC_STRAIN, lame_constants, law_body, rotate_state, state_rows, stress_update
 from .rotation import rotate_rows
@@ -46,17 +47,40 @@ class VonMisesCurve(NamedTuple):
 
     lame: float
     shear: float
-    hardening: Linear | Table
+    hardening: Linear | Power | Table
     rate: float
     power: float
 
 
+class VonMisesMixedCurve(NamedTuple):
+    """As `VonMisesCurve` without a rate, with beta [-] < 1. State: plastic strain, back stress deviator (6)."""
+
+    lame: float
+    shear: float
+    hardening: Linear | Power | Table
+    beta: float
+
+
 def von_mises_curve(
-    young: float, poisson: float, hardening: Linear | Table, *, rate: float = math.inf, exponent: float = 1.0
-) -> VonMisesCurve:
-    """The law with isotropic hardening; rate, exponent: Cowper and Symonds' C [1/time] and p."""
+    young: float,
+    poisson: float,
+    hardening: Linear | Power | Table,
+    beta: float = 1.0,
+    *,
+    rate: float = math.inf,
+    exponent: float = 1.0,
+) -> VonMisesCurve | VonMisesMixedCurve:
+    """The law of a hardening curve; beta in 0..1 (isotropic); rate, exponent: Cowper and Symonds' C [1/time] and p."""
     if not (rate > 0.0 and exponent > 0.0):
         raise ValueError(f"Cowper and Symonds' C {rate!r} and p {exponent!r} must be positive")
+    if not 0.0 <= beta <= 1.0:
+        raise ValueError(f"hardening parameter beta {beta!r} must lie between 0 (kinematic) and 1 (isotropic)")
+    if beta < 1.0:
+        if beta == 0.0 and not yield_at(hardening, 0.0)[0] > 0.0:
+            raise ValueError("kinematic hardening needs a yield stress: the surface keeps its size")
+        if rate < math.inf:
+            raise ValueError("a strain rate raises the curve of isotropic hardening only: beta must be 1")
+        return VonMisesMixedCurve(*lame_constants(young, poisson), hardening, beta)
     return VonMisesCurve(*lame_constants(young, poisson), hardening, rate, 1.0 / exponent)
 
 
@@ -146,7 +170,52 @@ def _mixed(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy
     )
 
 
-@law_body(rotate_state, VonMisesMixed)
+@law_body(stress_update, VonMisesMixedCurve)
+def _mixed_curve(
+    law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i
+):  # fmt: skip
+    volumetric, mean, x_xx, x_yy, x_zz, x_xy, x_yz, x_zx = elastic_trial(
+        law.shear, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx
+    )
+    mean += (law.lame + 2.0 / 3.0 * law.shear) * volumetric
+    x_xx -= state[1, i]
+    x_yy -= state[2, i]
+    x_zz -= state[3, i]
+    x_xy -= state[4, i]
+    x_yz -= state[5, i]
+    x_zx -= state[6, i]
+    trial = math.sqrt(3.0 * second_invariant(x_xx, x_yy, x_zz, x_xy, x_yz, x_zx))
+    first, _ = yield_at(law.hardening, 0.0)
+    before, _ = yield_at(law.hardening, state[PLASTIC_STRAIN, i])
+    less = (1.0 - law.beta) * (before - first)  # of the curve, what the back stress has of it
+    increment, strength, work = radial_return(
+        law.hardening, trial, state[PLASTIC_STRAIN, i], 3.0 * law.shear, 1.0, -less
+    )  # fmt: skip
+    scale = 1.0
+    if increment > 0.0:
+        state[PLASTIC_STRAIN, i] += increment
+        scale = 1.0 - 3.0 * law.shear * increment / trial
+        back = (1.0 - law.beta) * (strength + less - before) / trial
+        state[1, i] += back * x_xx
+        state[2, i] += back * x_yy
+        state[3, i] += back * x_zz
+        state[4, i] += back * x_xy
+        state[5, i] += back * x_yz
+        state[6, i] += back * x_zx
+        scale -= back
+        work = (1.0 - law.beta) * first * increment + law.beta * (work + less * increment)
+    return (
+        scale * x_xx + state[1, i] + mean,
+        scale * x_yy + state[2, i] + mean,
+        scale * x_zz + state[3, i] + mean,
+        scale * x_xy + state[4, i],
+        scale * x_yz + state[5, i],
+        scale * x_zx + state[6, i],
+        work,
+    )
+
+
+@law_body(rotate_state, VonMisesMixed, VonMisesMixedCurve)
 def _mixed_rotate(law, w_xy, w_yz, w_zx, state, i):
     rotate_rows(w_xy, w_yz, w_zx, state, 1, i)
 
@@ -178,6 +247,6 @@ def _rows(law):
     return 1
 
 
-@law_body(state_rows, VonMisesMixed)
+@law_body(state_rows, VonMisesMixed, VonMisesMixedCurve)
 def _more_rows(law):
     return 7

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from zrno.pipelines.laws import initial_energy, law_of
+from zrno.pipelines.laws import initial_energy, law_of, structural_law_of
 from zrno.solvers import materials as laws
 from zrno.solvers.errors import Unsupported
 from zrno.translators.laws import EQUATIONS_OF_STATE, LAWS
@@ -44,6 +44,14 @@ CASES: dict[str, tuple[laws.Law, laws.Law]] = {
     "power": (
         built("von_mises_power", **MODULI, yield_stress=1.0, Cy=2.0, M=0.3),
         laws.von_mises(210.0, 0.3, 1.0, 420.0 / 212.0, 0.3),
+    ),
+    "power with an exponent": (
+        built("von_mises_power", **MODULI, yield_stress=1.0, Cy=2.0, n=0.4, M=0.3),
+        laws.von_mises_curve(210.0, 0.3, laws.power(1.0, 2.0, 0.4), 0.3),
+    ),
+    "kinematic with a rate that has nothing to harden": (
+        built("von_mises", **MODULI, yield_stress=1.0, beta=0.0, rate_C=40.0, rate_p=5.0),
+        laws.von_mises_curve(210.0, 0.3, laws.Linear(1.0, 0.0), rate=40.0, exponent=5.0),
     ),
     "fluid": (
         built("fluid", WATER, pressure_cutoff=-0.1, viscosity=0.2),
@@ -158,7 +166,8 @@ def test_every_law_is_built_or_refused_by_name() -> None:
         ("hydro", {"G": 1.0, "spall": 1.5}, WATER, ValueError, "spall"),
         ("cap", {**CAP, "ftype": 3.0}, None, ValueError, "ftype"),
         ("cap", {**CAP, "W": 0.0}, None, ValueError, "W 0.0"),
-        ("von_mises_power", {**MODULI, "yield_stress": 1.0, "Cy": 1.0, "n": 0.5}, None, Unsupported, "exponent"),
+        ("von_mises_power", {**MODULI, "yield_stress": 1.0, "Cy": 1.0, "n": -0.5}, None, ValueError, "exponent"),
+        ("orthotropic", {"Ex": 1.0}, None, Unsupported, "orthotropic is not computed"),  # of particles
         ("von_mises", {**MODULI, "yield_stress": 1.0, "tangent_modulus": 1.0, "beta": 0.5, "rate_C": 1.0}, None,
          Unsupported, "kinematic"),
         ("drucker_prager_soil", {**MODULI, **SOIL, "shape": 0.8}, None, Unsupported, "shape"),
@@ -170,3 +179,25 @@ def test_what_makes_no_sense_and_what_is_not_computed(
 ) -> None:
     with pytest.raises(error, match=re.escape(wrong)):
         built(law, eos, **given)
+
+
+def test_an_orthotropic_material_of_finite_elements_has_its_axes() -> None:
+    names = LAWS["orthotropic"].parameters
+    values = (3.0, 2.0, 1.0, 0.2, 0.1, 0.05, 0.8, 0.6, 0.4)
+    material = Material(1, "m", "orthotropic", 2.0, dict(zip(names, values, strict=True)))
+    turned = laws.axes_of((0.0, 2.0, 0.0), (0.0, 1.0, 3.0))
+    assert turned.tolist() == [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]
+    straight, other = (structural_law_of(material, {}, axes).stiffness for axes in (None, turned))  # type: ignore[union-attr]
+    order = [1, 2, 0, 4, 5, 3]  # the law's x is y now, its y is z
+    np.testing.assert_allclose(other[np.ix_(order, order)], straight, atol=1e-12)
+    with pytest.raises(ValueError, match="parallel"):
+        laws.axes_of((1.0, 0.0, 0.0), (2.0, 0.0, 0.0))
+    with pytest.raises(ValueError, match="positive"):
+        structural_law_of(Material(1, "m", "orthotropic", 2.0, {"Ex": 1.0}), {}, None)
+    assert structural_law_of(Material(1, "m", "elastic", 2.0, MODULI), {}, turned) == CASES["elastic"][1]
+
+
+def test_mixed_hardening_by_a_table() -> None:
+    law = built("von_mises", tables={"hardening": TABLE}, **MODULI, yield_stress=9.0, beta=0.2)
+    assert isinstance(law, laws.VonMisesMixedCurve)
+    assert (law.beta, law.hardening.stress.tolist()) == (0.2, [1.0, 2.0])  # type: ignore[union-attr]

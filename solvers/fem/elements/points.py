@@ -25,6 +25,19 @@ def elastic_modulus(law: Any) -> tuple[float, float]:
 
 ROUNDS = 30  # of the search for the strain through the thickness
 SMALL = 1e-12  # of the stiffness times the largest strain
+LOST = 1e6  # times that: no answer, which the solver is to see
+FLAT = 1e-6  # of the elastic stiffness: on an apex, from where the elastic one leads away
+
+
+@kernel
+def virgin_stiffness(law, rows, dt):
+    """Against uniaxial strain."""
+    modulus = np.zeros((1, 6, 6))
+    stress_and_tangent(
+        law, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, dt, np.zeros((rows, 1)), 0,
+        np.zeros((rows, 2)), modulus, 0,
+    )  # fmt: skip
+    return modulus[0, 2, 2]
 
 
 @kernel
@@ -63,10 +76,12 @@ def advance_plane_stress(law, strain, before, stress, state, begin, rho, dt, wor
     modulus: (m, 6, 6), with zz condensed out of it: its row and column are zero; kept: (k,) scratch.
     """
     rows = state.shape[0]
+    elastic = virgin_stiffness(law, rows, dt)
     for p in range(strain.shape[0]):
         d, s = strain[p], before[p]
         for k in range(rows):
             kept[k] = state[k, begin + p]
+        tolerance, stiff = 0.0, 0.0
         for _ in range(ROUNDS):
             for k in range(rows):
                 state[k, begin + p] = kept[k]
@@ -79,15 +94,15 @@ def advance_plane_stress(law, strain, before, stress, state, begin, rho, dt, wor
             tolerance = SMALL * max(stiff * most, abs(s[0]), abs(s[1]))
             if abs(out[2]) <= tolerance:
                 break
-            d[2] -= out[2] / stiff
-        stress[p, 0] = out[0]
+            d[2] -= out[2] / (stiff if stiff > FLAT * elastic else elastic)
+        stress[p, 0] = out[0] if abs(out[2]) <= LOST * tolerance else np.nan
         stress[p, 1] = out[1]
         stress[p, 2] = 0.0
         stress[p, 3] = out[3]
         stress[p, 4] = out[4]
         stress[p, 5] = out[5]
         work[p] = out[6]
-        soft = 1.0 / modulus[p, 2, 2]
+        soft = 1.0 / stiff if stiff > 0.0 else 0.0
         for r in range(6):
             if r != 2:
                 factor = modulus[p, r, 2] * soft
