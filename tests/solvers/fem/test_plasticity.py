@@ -44,7 +44,7 @@ def test_newtons_method_is_quadratic(name: str) -> None:
     p = problem(x, group("hex8", "solid", nodes, law), held(len(x), (number[0], "xyz")), motions=motions)
     change = np.zeros((len(x), 6))
     change[top, :2] = press, shear
-    how = fem.Iteration(force=1e-13, most=30)
+    how = fem.Iteration("newton", force=1e-13, most=30)
     a = Assembly(p)
     start = Shape(np.zeros((len(x), 6)))
     _, _, trace = equilibrium(a, start, Target(change, lambda s: np.zeros((len(x), 6))), 1.0, how)
