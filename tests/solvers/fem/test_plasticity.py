@@ -58,7 +58,7 @@ def test_newtons_method_is_quadratic(name: str) -> None:
 # plates and shells
 
 
-@pytest.mark.parametrize(("layers", "most"), [(5, 0.06), (10, 0.02), (20, 0.005)])
+@pytest.mark.parametrize(("layers", "most"), [(5, 0.06), (10, 0.01), (20, 0.005)])
 def test_plastic_moment_of_a_plate(layers: int, most: float) -> None:
     """A strip bent to 30 times its elastic curvature: M = M_p (1 - 1/3 (1/30)^2) of M_p = sy h^2/4 a unit of width.
 
