@@ -85,3 +85,23 @@ def test_the_dissertations_plate_turns_without_stress(shared: Path) -> None:
     along = np.linalg.norm(np.diff((x + u[:, :3])[:18], axis=0), axis=1)
     np.testing.assert_allclose(along, np.linalg.norm(np.diff(x[:18], axis=0), axis=1), rtol=1e-8)
     assert solver.energies()["internal"] < 1e-9
+
+
+@pytest.mark.parametrize(("axes", "young"), [((1, 0, 0, 0, 1, 0), 2.0e5), ((0, 1, 0, 0, 0, 1), 0.5e5), ((0,) * 6, 2e5)])
+def test_an_orthotropic_material_lies_along_the_axes_of_its_group(
+    shared: Path, tmp_path: Path, axes: tuple[int, ...], young: float
+) -> None:
+    """hex1 with PAK's model 2: the stiffness against the pull along x is that of the law's axis that lies there."""
+    text = (shared / "reference/pak/hex1.dat").read_text()
+    own = "\n".join("".join(f"{v:10g}" for v in row) for row in ((2e5, 1e5, 0.5e5), (0.3, 0.2, 0.05), (8e4, 6e4, 4e4)))
+    for old, new in (
+        ("\n    1    1    3\n", "\n    2    1    3\n"),
+        ("\n    1    1  0.000000\n   2.1e+05\n  0.300000\n", f"\n    2    1  0.000000\n{own}\n"),
+        ("    3    1    0    1 ", "    3    1    0    2 "),
+        (" -1\n    1 ", " -1\n" + "".join(f"{v:10d}" for v in axes) + "\n    1 "),
+    ):
+        assert text.count(old) == 1
+        text = text.replace(old, new)
+    deck = tmp_path / "ortho.dat"
+    deck.write_text(text)
+    assert _solved(deck).shape.u[:, 0].max() == pytest.approx(10.0 / young)
