@@ -140,8 +140,24 @@ def pair_normal(i, j, z, dx, dy, dz, arrays):
 
 @kernel
 def interface_force(
-    i0, i1, first, count, rows, shape, x, y, z, s, weight, h, volume_exponent, normal, material, body,
-    rows_apart, force,
+    i0,
+    i1,
+    first,
+    count,
+    rows,
+    shape,
+    x,
+    y,
+    z,
+    s,
+    weight,
+    h,
+    volume_exponent,
+    normal,
+    material,
+    body,
+    rows_apart,
+    force,
 ):
     """Adds to force[3] what particles of other materials do to those of material `body` through the momentum sum.
 

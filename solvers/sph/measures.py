@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..materials import PLASTIC_STRAIN
-from .axis import TURN
 from .problem import Problem
+from .rings import TURN
 from .state import Floats, State
 
 

@@ -162,7 +162,7 @@ def constitutive(
             if hoop is not None:
                 s[2, i] *= arrays.x[i]
                 s[3, i] *= arrays.x[i]
-        elif hoop is not None:  # the axial row with the radius, see `axis`
+        elif hoop is not None:  # the axial row with the radius, see `rings`
             s[0, i] = n_xx
             s[1, i] = n_xy
             s[2, i] = n_xy * arrays.x[i]
@@ -188,9 +188,24 @@ def _unrolled(laws, number, i0, i1, z, dt, correction, density_rate, stress_rate
         return none
 
     def each(laws, number, i0, i1, z, dt, correction, density_rate, stress_rate, heat, wave, hoop, arrays, numbers):
-        constitutive(i0, i1, z, number, laws[0], dt, correction, density_rate, stress_rate, heat, wave, hoop, arrays, numbers)
+        constitutive(
+            i0, i1, z, number, laws[0], dt, correction, density_rate, stress_rate, heat, wave, hoop, arrays, numbers
+        )
         each_law(
-            laws[1:], number + 1, i0, i1, z, dt, correction, density_rate, stress_rate, heat, wave, hoop, arrays, numbers
+            laws[1:],
+            number + 1,
+            i0,
+            i1,
+            z,
+            dt,
+            correction,
+            density_rate,
+            stress_rate,
+            heat,
+            wave,
+            hoop,
+            arrays,
+            numbers,
         )
 
     return each

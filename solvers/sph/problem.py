@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from ..contact.friction import Coulomb, Drag
 from ..contact.plane import Wall
 from ..materials import Law
-from .axis import AXIS, TURN
 from .ghosts import PERIODIC, Plane
+from .rings import AXIS, TURN
 from .smoothing import shape_of
 
 Floats = NDArray[np.float64]
@@ -83,7 +83,7 @@ class Problem:
     between bodies act along the normals of the contact: particles then slide over a coarse wall as over a smooth one
     (their centres turn nothing exactly). local_steps: stiff bodies take several steps within one of the others
     (`local`); None: where that goes and is worth while. axisymmetric: a plane problem whose x is the distance from the
-    axis y; masses are those of whole rings (`axis`).
+    axis y; masses are those of whole rings (`rings`).
     """
 
     dimension: int
@@ -177,7 +177,10 @@ class Problem:
             "XSPH": self.cures.xsph > 0.0,
             "pair viscosity": any(b.alpha or b.beta for b in self.bodies),
             "a wall that bears its neighbours' stress": any(b.bearing for b in self.bodies),
-            "periodic planes across the radius": any(p.kind == PERIODIC and p.axis == 0 for p in self.planes),
+            "another plane below along x than the axis": any(
+                p.axis == 0 and p.side < 0 and p != AXIS for p in self.planes
+            ),
+            "a periodic plane across x": any(p.axis == 0 and p.kind == PERIODIC for p in self.planes),
             "a rigid plane that is not normal to the axis": any(w.normal[0] != 0.0 for w in self.walls),
             "a body force across the axis": self.body_force[0] != 0.0
             or (self.body_curve is not None and bool(np.any(self.body_curve[1][:, 0]))),
@@ -189,7 +192,7 @@ class Problem:
 
     @property
     def sections(self) -> Floats:
-        """(n,) volumes of the particles in as many dimensions as the sums have: of rings the areas of their sections."""
+        """(n,) volumes of the particles, in as many dimensions as the sums have: of rings the areas of sections."""
         volume = self.mass / self.density
         return volume / (TURN * self.x[:, 0]) if self.axisymmetric else volume
 

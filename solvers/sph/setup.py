@@ -148,7 +148,8 @@ def described(p: Problem, contact: Contact, cures: Cures, has: Rows, threads: in
         "as the original program": p.original,
     }
     return (
-        f"{'axisymmetric' if p.axisymmetric else f'{p.dimension}D'}, {p.kernel} kernel, {'one' if uniform_h(p) else 'variable'} h, "
+        f"{'axisymmetric' if p.axisymmetric else f'{p.dimension}D'}, {p.kernel} kernel, "
+        f"{'one' if uniform_h(p) else 'variable'} h, "
         f"{'one' if uniform_mass(p) else 'variable'} mass, laws: {laws}, "
         f"contact: {contact.name(len(p.bodies))}, step: {STEP_OPTIONS[p.step_option]}, {threads} thread(s)"
         + "".join(f", {term}" for term, there in beyond.items() if there)

@@ -20,9 +20,9 @@ from ..materials import PLASTIC_STRAIN
 from ..neighbours import Cells, NeighbourList
 from ..threads import available, run
 from . import across, blame, ghosts, local, measures, probes, reference, setup, step
-from .axis import TURN
 from .contact import contact_of
 from .problem import Cures, Problem
+from .rings import TURN
 from .smoothing import shape_of
 from .state import Arrays, State
 
@@ -185,8 +185,8 @@ class Solver:
             None if images is None else images.sign, None if images is None else images.shift, self._mirrors,
             self._contact.friction, self._contact.damping, self._contact.normals, self._contact.by_normals,
             self._contact.walls, a.wall_slip if has.wall_slip else None, a.contact_heat,
-            True if self._plain else None, a.hoop, self._rows_apart, self._reference, a, self._numbers, self._laws, self._progress,
-            float(until), float(pause), steps, self._spare**2,
+            True if self._plain else None, a.hoop, self._rows_apart, self._reference, a, self._numbers, self._laws,
+            self._progress, float(until), float(pause), steps, self._spare**2,
         )  # fmt: skip
         return int(found[0])
 

@@ -32,7 +32,7 @@ class Arrays(NamedTuple):
     slid, the load of friction (d + 2, m); wall_slip: the same for each wall; colour: normal to other bodies, mobilised:
     traction by normal force, (d, m) each (see `slip`). Of total-Lagrangian bodies: deformation (d*d): F - I;
     hourglass: rows of `nominal`; nominal (d*d): V P M^-1 - kappa (F - I)/2. held (2 d, m): of
-    stiff bodies with local steps, see `local`. hoop: r u, see `axis`.
+    stiff bodies with local steps, see `local`. hoop: r u, see `rings`.
     """
 
     x: Any

@@ -7,8 +7,8 @@ Leap-frog: positions and stresses live at whole steps, velocities at half steps.
     a, nearest distance, contact, the next dt                              force
 `prepare` does the last two once at the start. The original program numbers the same states differently; see `solver`.
 What a scene does not have is None in `advance`'s arguments and is not compiled at all. Bodies of the total-Lagrangian
-formulation (reference) have loops of their own for strain and force; plain: whether there are others. rows_apart: None, or True where
-s has all its components: with the gradient correction, and of bodies of revolution (hoop).
+formulation (reference) have loops of their own for strain and force; plain: whether there are others. rows_apart: None,
+or True where s has all its components: with the gradient correction, and of bodies of revolution (hoop, see rings).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 
 from ..jit import kernel
 from ..threads import barrier, claim, share
-from . import across, axis, bearing, cures, ghosts, lagrangian, nominal, pairs, slip, walls
+from . import across, bearing, cures, ghosts, lagrangian, nominal, pairs, rings, slip, walls
 from .particle import critical_step, drift, each_law, half_work, kick
 
 # entries of `progress`, the loop's own memory
@@ -50,7 +50,7 @@ def strain(
             correction,
         )  # fmt: skip
     if hoop is not None:
-        axis.radial_strain(i0, i1, arrays)
+        rings.radial_strain(i0, i1, arrays)
     if reference is not None:
         lagrangian.deformation(i0, i1, solid, dt, reference, arrays)
     if density_rate is not None:
@@ -80,7 +80,7 @@ def force(i0, i1, shape, z, h, mass, nearest, line, cx, contact, mixed, correcti
         scale = numbers.force_scale
     body = numbers.body
     if hoop is not None:
-        body = axis.NO_FORCE
+        body = rings.NO_FORCE
     if plain is not None:
         pairs.momentum(
             i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.x, arrays.y, z, arrays.s, weight, h,
@@ -88,7 +88,7 @@ def force(i0, i1, shape, z, h, mass, nearest, line, cx, contact, mixed, correcti
             rows_apart, artificial, numbers.inverse_w, bx, arrays.by, arrays.bz,
         )  # fmt: skip
     if hoop is not None:
-        axis.hoop_force(i0, i1, numbers.body, arrays)
+        rings.hoop_force(i0, i1, numbers.body, arrays)
     longest = np.inf
     if reference is not None:
         longest = lagrangian.internal_force(i0, i1, z, plain, reference, arrays, numbers)
@@ -107,7 +107,7 @@ def force(i0, i1, shape, z, h, mass, nearest, line, cx, contact, mixed, correcti
     if numbers.original:
         least = np.inf
     if hoop is not None:
-        least = min(least, axis.closest(i0, i1, TOWARDS, arrays))
+        least = min(least, rings.closest(i0, i1, TOWARDS, arrays))
     return min(longest, least, critical_step(i0, i1, z, wave, numbers, arrays))
 
 
@@ -155,9 +155,9 @@ def advance(
                     ghosts.follow_motion(g0, g1, offset, z, image_source, image_sign, image_shift, arrays)
                     barrier(sync, threads)
                 if hoop is not None:
-                    axis.flow(i0, i1, hoop, arrays)
+                    rings.flow(i0, i1, hoop, arrays)
                     g0, g1 = share(len(image_source), thread, threads)
-                    axis.flow(offset + g0, offset + g1, hoop, arrays)
+                    rings.flow(offset + g0, offset + g1, hoop, arrays)
                     barrier(sync, threads)
                 c = claim(sync, taken)
                 while c < chunks:
@@ -176,7 +176,7 @@ def advance(
             if reference is not None:
                 arrays.reduced[thread, 3] = nominal.nominal_stress(i0, i1, z, reference, arrays)
             if hoop is not None:
-                axis.areas(i0, i1, arrays)
+                rings.areas(i0, i1, arrays)
             else:
                 for i in range(i0, i1):
                     arrays.volume[i] = arrays.mass[i] / arrays.density[i]

@@ -1,10 +1,10 @@
 """Bodies of revolution: x is the distance r from the axis, y runs along it, a particle is a ring.
 
-Strain by the quotient of the flow through rings, so that a state of equal pressure is in balance up to the axis; force as
-its transpose, so that the work of the forces is that of the strain and no pair makes momentum along the axis. With the
-area of a ring's section A = m/(2 pi r rho) in place of the plane's volume, sums over the neighbours and their images
-across the axis (Petschek & Libersky 1993 have the radial row, hoop stress and images; the weights of the axial row are
-those of Brookshaw 2003):
+The radial strain is by r u, so that a state of equal pressure is in balance up to the axis; the force is the transpose
+of the strain, so that its work is that of the strain and no pair makes momentum along the axis. With the area of a
+ring's section A = m/(2 pi r rho) in place of the plane's volume, sums over the neighbours and their images across the
+axis (Petschek & Libersky 1993 have the radial row, hoop stress and images; the axial row's weights are as Brookshaw's,
+2003):
 
     e_rr = (1/r_i) sum A_j (r_j u_j - r_i u_i) dW/dr - u_i/r_i    du/dz = (1/r_i) sum A_j (r_j u_j - r_i u_i) dW/dz
     grad v = sum A_j (v_j - v_i) grad W                           e_tt = u_i/r_i
