@@ -54,12 +54,14 @@ def test_strain_of_an_expanding_cylinder_is_exact_up_to_the_axis() -> None:
     gradient = solver._state.rows("gradient")[:, : len(x)]
     inside = np.all(solver._state.rows("x")[:, : len(x)] < 0.9, axis=0)
     wanted = np.array([0.003, 0.0, 0.0, -0.002])[:, None]
+    wanted /= 1.0 + 0.5 * solver.time * wanted  # at the middle of the step
     assert np.abs(gradient[:, inside] - wanted).max() < 1e-14
     stress = solver.frame().particles["stress"][np.all(x[:, :2] < 0.9, axis=1)]
     lame, shear = NU / (1.0 + NU) / (1.0 - 2.0 * NU), 0.5 / (1.0 + NU)
-    for column, rate in enumerate((0.003, -0.002, 0.003)):
-        expected = (lame * 0.004 + 2.0 * shear * rate) * solver.time
-        assert np.allclose(stress[:, column], expected, rtol=1e-4), column
+    radial, axial = wanted[0, 0], wanted[3, 0]
+    for column, rate in enumerate((radial, axial, radial)):
+        expected = (lame * (2.0 * radial + axial) + 2.0 * shear * rate) * solver.time
+        assert np.allclose(stress[:, column], expected, rtol=1e-12), column
 
 
 def test_equal_pressure_is_in_balance_up_to_the_axis() -> None:
@@ -137,25 +139,27 @@ def taylor_bar(layers: int, **options: Any) -> Problem:
     return rings(x, v, spacing, density, bodies=(copper,), **options)
 
 
-@pytest.mark.parametrize(
-    "layers", [5, pytest.param(8, marks=pytest.mark.slow), pytest.param(12, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize("layers", [5, *(pytest.param(n, marks=pytest.mark.slow) for n in (8, 12, 16))])
 def test_a_taylor_bar_is_that_of_three_dimensions(layers: int) -> None:
-    """Length 21.42 to 21.47 and radius 7.02 to 7.13 by the literature; 3D, total-Lagrangian: 21.5 and 7.05."""
+    """Length 21.42 to 21.47 and radius 7.02 to 7.13 by the literature; 3D, total-Lagrangian: 21.5 and 7.05.
+
+    h is 1.5 spacings: at 1.2 the foot falls into disorder on the axis at 12 and 16 layers, and the run stops.
+    """
     spacing = 3.2 / layers
-    solver = finished(taylor_bar(layers, end_time=0.08), 0.08)
+    problem = taylor_bar(layers, end_time=0.08)
+    solver = finished(dataclasses.replace(problem, h=problem.h * 1.25), 0.08)
     x = solver.frame().particles["position"]
     assert x[:, 1].max() + 0.5 * spacing == pytest.approx(21.45, rel=0.02)
     assert x[:, 0].max() == pytest.approx(7.08, rel=0.05)
-    assert solver.energy_report()["balance_error"] < 0.02
+    assert solver.energy_report()["balance_error"] < 0.03
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("spacing", [2.0, 1.0])
 def test_a_spherical_shell_stops_where_verney_says(spacing: float) -> None:
     """Inner radius by the fall of the mean r^3, see samples/verney_shell: 50 mm."""
-    exact = VerneyShell(shape="sphere", inner_radius=80.0, outer_radius=100.0, density=1.845e-3, yield_stress=330.0,
-                        speed=545.1447)  # fmt: skip
+    exact = VerneyShell(inner=80.0, outer=100.0, density=1.845e-3, yield_stress=330.0, speed=545.1447, shape="sphere")
+    assert exact.inner_radius() == pytest.approx(50.0, rel=1e-6)
     x = ball(spacing, 100.0, 80.0)
     r = np.linalg.norm(x, axis=1)
     law = von_mises(330e3, 0.3, 330.0, 0.0, 1.0)
@@ -168,7 +172,7 @@ def test_a_spherical_shell_stops_where_verney_says(spacing: float) -> None:
         solver.advance(0.002 * (k + 1), 10**6)
         now = np.linalg.norm(solver.frame().particles["position"], axis=1)
         inner.append(np.cbrt(80.0**3 - mass @ (r**3 - now**3) / mass.sum()))
-    assert min(inner) == pytest.approx(exact.final_inner_radius, rel=0.02)
+    assert min(inner) == pytest.approx(exact.inner_radius(), rel=0.02)
     assert solver.energy_report()["balance_error"] < 1e-3
 
 
