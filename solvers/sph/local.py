@@ -274,10 +274,11 @@ def advance(
                         a, b, z, shape, cx, contact, friction, damping, normals, by_normals, planes, wall_slip,
                         contact_heat, last, arrays, numbers,
                     )  # fmt: skip
+                since = last if c < slow_chunks else fast_last
                 own = step.force(
                     a, b, shape, z, h, mass, nearest, line, None, None, None, correction, bx, artificial, heat, None,
                     wave, None, None, None, None, None, None, None, plain, None, correction, reference,
-                    last if c < slow_chunks else fast_last, arrays, numbers,
+                    since, arrays, numbers,
                 )  # fmt: skip
                 if c < slow_chunks:
                     met = _meet(
