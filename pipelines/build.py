@@ -13,6 +13,7 @@ from zrno.pipelines.method import Sph
 from zrno.solvers.errors import Unsupported
 from zrno.solvers.materials import Law, family
 from zrno.solvers.sph import Body, Cures, Plane, Problem, defaults
+from zrno.solvers.sph.rings import AXIS
 from zrno.translators.model import Eos, Material, Model, ParticleControl
 from zrno.translators.text import Fault, InputError
 from zrno.translators.yaml_marks import Place
@@ -75,12 +76,18 @@ def particle_problem(
 
     energies = [initial_energy(_eos(model, m), m.density) for m in per_material]
     masses = [m.mass / max(1, count) for m, count in zip(per_material, owned, strict=True)]
+    mass = of_material(masses) if particles.mass is None else particles.mass
+    if particles.mass is None and control.axisymmetric:  # rings of equal section
+        radius = np.maximum(particles.x[:, 0], 0.0)
+        mean = np.bincount(body, radius, minlength=len(numbers)) / np.maximum(owned, 1)
+        mass = mass * radius / np.maximum(mean, 1e-300)[body]
     return Problem(
         title=model.title,
         dimension=control.dimension,
+        axisymmetric=control.axisymmetric,
         x=particles.x,
         v=np.zeros((n, 3)) if particles.velocity is None else particles.velocity,
-        mass=of_material(masses) if particles.mass is None else particles.mass,
+        mass=mass,
         h=of_material([m.h for m in per_material]) if particles.h is None else particles.h,
         density=of_material([m.density for m in per_material]) if particles.rho is None else particles.rho,
         energy=of_material(energies) if particles.e is None and any(energies) else particles.e,
@@ -116,7 +123,8 @@ def _curve(method: Sph) -> tuple[Any, Any] | None:
 def _planes(control: ParticleControl) -> tuple[Plane, ...]:
     """The deck's planes xmin, xmax, ymin, ..., as far as its dimension goes."""
     given = enumerate((control.planes or [])[: 2 * control.dimension])
-    return tuple(Plane(k // 2, 1 if k % 2 else -1, kind, position) for k, (kind, position) in given if kind)
+    planes = tuple(Plane(k // 2, 1 if k % 2 else -1, kind, position) for k, (kind, position) in given if kind)
+    return (AXIS, *planes) if control.axisymmetric and AXIS not in planes else planes
 
 
 def _transducers(control: ParticleControl, numbers: list[int]) -> tuple[tuple[float, float, float, int], ...]:

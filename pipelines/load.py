@@ -55,6 +55,11 @@ class Result:
         """1, 2 (plane strain) or 3; 3 where the run did not say."""
         return int(self.manifest.get("dimension") or 3)
 
+    @property
+    def axisymmetric(self) -> bool:
+        """Whether x is the distance from the axis; masses, energies and forces are then those of whole rings."""
+        return bool(self.manifest.get("axisymmetric"))
+
     @cached_property
     def _history(self) -> tuple[dict[str, NDArray[Any]], dict[str, str]]:
         path = self.directory / HISTORY

@@ -31,7 +31,7 @@ class Manifest:
     """run.json of a result folder: written when the run starts (status "running") and with each `update`.
 
     inputs: SHA-256 by file; options: every option after defaults; units: a consistent system ("mm-ms-g") or None;
-    dimension: 1, 2 or 3.
+    dimension: 1, 2 or 3; axisymmetric: of two dimensions, x the distance from the axis.
     """
 
     def __init__(
@@ -44,6 +44,7 @@ class Manifest:
         title: str = "",
         units: str | None = None,
         dimension: int = 3,
+        axisymmetric: bool = False,
     ) -> None:
         self._path = Path(directory) / FILE
         self.data: dict[str, Any] = {
@@ -51,6 +52,7 @@ class Manifest:
             "title": title,
             "units": units,
             "dimension": dimension,
+            "axisymmetric": axisymmetric,
             "version": version(),
             "git_hash": git_hash(),
             "inputs": dict(inputs),

@@ -8,6 +8,7 @@ beyond its centre. To add a measure: a function here, whose keyword parameters a
 from __future__ import annotations
 
 import inspect
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -26,10 +27,12 @@ BINS = 20
 
 @dataclass(frozen=True, slots=True)
 class Cloud:
-    """The particles of one frame. arrays: as `load(...).arrays()` gives them; dimension: 1, 2 or 3."""
+    """The particles of one frame. arrays: as `load(...).arrays()` gives them; dimension: 1, 2 or 3; axisymmetric: x is
+    the distance from the axis, of rings."""
 
     arrays: Mapping[str, NDArray[Any]]
     dimension: int = 3
+    axisymmetric: bool = False
 
     def of(self, material: int | None) -> Cloud:
         """Those of one material, all for None. Raises ValueError where it has none."""
@@ -43,7 +46,7 @@ class Cloud:
 
     def only(self, rows: NDArray[np.bool_]) -> Cloud:
         """Some of the particles."""
-        return Cloud({name: values[rows] for name, values in self.arrays.items()}, self.dimension)
+        return Cloud({name: values[rows] for name, values in self.arrays.items()}, self.dimension, self.axisymmetric)
 
     @property
     def x(self) -> Floats:
@@ -59,7 +62,10 @@ class Cloud:
     def half(self) -> Floats:
         """Half of each particle's cell, a length, shape (n,)."""
         density = np.maximum(np.asarray(self.arrays["density"], float), 1e-300)
-        return np.asarray(0.5 * (self.mass / density) ** (1.0 / self.dimension))
+        volume = self.mass / density
+        if self.axisymmetric:
+            volume = volume / (2.0 * math.pi * np.maximum(self.x[:, 0], 1e-300))
+        return np.asarray(0.5 * volume ** (1.0 / self.dimension))
 
     def field(self, name: str) -> Floats:
         """A field or component (`stress_xx`), shape (n,). Raises ValueError for a name that is not there."""

@@ -85,7 +85,9 @@ def _draw(
 
 
 def _labelled(heading: str, column: str, result: Result) -> str:
-    unit = quantity(column, result.units, result.dimension).unit or result.history_units.get(column, "")
+    unit = quantity(
+        column, result.units, 3 if result.axisymmetric else result.dimension
+    ).unit or result.history_units.get(column, "")
     return f"{heading} [{unit}]" if unit else heading
 
 

@@ -153,7 +153,9 @@ def _frame_at(result: Result, when: float | str) -> int:
 def _of_frame(result: Result, quantity: Quantity, index: int) -> Any:
     assert quantity.measure is not None
     start = 0 if quantity.measure == "restitution" else index
-    clouds = [Cloud(result.arrays(index=i), result.dimension) for i in dict.fromkeys((index, start))]
+    clouds = [
+        Cloud(result.arrays(index=i), result.dimension, result.axisymmetric) for i in dict.fromkeys((index, start))
+    ]
     return evaluate(quantity.measure, clouds[0], clouds[-1], quantity.given)
 
 

@@ -151,7 +151,7 @@ def _pictures(
         seen = extent(shown.points, shown.reach, along)
         box = Extent(np.minimum(box.low, seen.low), np.maximum(box.high, seen.high))
         count = max(count, len(shown.points))
-    label = quantity(field, result.units, result.dimension)
+    label = quantity(field, result.units, 3 if result.axisymmetric else result.dimension)
     when = quantity("time", result.units).unit
     scale = scale_for(least, most, str(label))
     stage = Stage(size, along, box, scale, title=result.title, flat=is_flat(spread), fine=count * len(frames) <= FINE)

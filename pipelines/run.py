@@ -93,6 +93,7 @@ def run(
             title=(scene.title if scene else "") or model.title,
             units=scene.units if scene else None,
             dimension=solver.problem.dimension,
+            axisymmetric=getattr(solver.problem, "axisymmetric", False),
         )
         for report in ready.made:
             for line in [*report["notes"], *losses(report, "approximated", "dropped")]:
@@ -167,7 +168,7 @@ def _observers(
     frames = (scene.output.every if scene else None) or control.output_interval or max(end, 1e-300) / FRAMES
     rows = control.history_interval or frames / ROWS
     saves = scene.checkpoint.every if scene and scene.checkpoint else frames
-    units = scene.system.labels(control.dimension) if scene and scene.system else {}
+    units = scene.system.labels(3 if control.axisymmetric else control.dimension) if scene and scene.system else {}
     return (
         ResultSeries(
             directory,

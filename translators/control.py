@@ -23,10 +23,12 @@ class Analysis:
 class ParticleControl:
     """Control cards 1-7 of a particle deck, by the deck's own terms; None or 0 mean the deck's default.
 
-    places: line and column of what was read, by field, for messages.
+    places: line and column of what was read, by field, for messages. axisymmetric: option 4, of two dimensions, x the
+    radius and y the axis; masses are of whole rings.
     """
 
     dimension: int = 3
+    axisymmetric: bool = False
     discretisation: int = 0
     end_time: float = 0.0
     step_factor: float = 0.0

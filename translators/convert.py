@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -51,6 +52,8 @@ def to_particles(
     if settings["dimension"] not in (None, dimension):
         settings.fault(("dimension",), "the mesh has another dimension", settings["dimension"], str(dimension))
         settings.stop()
+    if settings["axisymmetric"]:
+        filling = _turned(filling, dimension, settings)
     target = Model(title=_title(model.title), format="mcm", version="2", dimension=dimension)
     numbers = {part: number for number, part in enumerate(chosen, 1)}
     material = np.array(chosen).argsort().argsort()  # of each part its place among the sorted ones
@@ -151,6 +154,16 @@ def _in_space(model: Model, parts: list[int]) -> bool:
     """Whether some of the parts are shells in space."""
     areas = [b for b in model.blocks if b.kind.startswith(("tri", "quad")) and np.isin(b.part, parts).any()]
     return model.dimension == 3 and bool(areas)
+
+
+def _turned(filling: Filling, dimension: int, settings: Settings) -> Filling:
+    """The particles of a flat mesh as rings round x = 0, with their volumes."""
+    if dimension != 2 or not np.all(filling.x[:, 0] > 0.0):
+        least = filling.x[:, 0].min()
+        said = "a mesh in space" if dimension != 2 else f"the mesh has particles at x = {least:g}"
+        settings.fault(("axisymmetric",), "x is the radius of a flat mesh", said, "a flat mesh where x is above 0")
+        settings.stop()
+    return replace(filling, volume=filling.volume * (2.0 * math.pi * filling.x[:, 0]))
 
 
 def _masses(filling: Filling, density: Any) -> Any:

@@ -31,6 +31,7 @@ def particle_control(
     gravity = settings["gravity"] if settings.gives("gravity") else held.gravity(model, end, report)
     control = ParticleControl(
         dimension=dimension,
+        axisymmetric=settings["axisymmetric"],
         end_time=end,
         step_factor=said("step_factor", analysis.step_factor),
         initial_step=said("initial_step", analysis.initial_step),

@@ -31,6 +31,13 @@ TABLE: tuple[Setting | Group, ...] = (
         "2 plane strain, 3 (a flat mesh is then of shells); null: the mesh's",
         "card 1 axopt",
     ),
+    Setting(
+        "axisymmetric",
+        one_of(False, True),
+        False,
+        "a flat mesh turns round the axis x = 0: x is the radius; the original program refuses it",
+        "card 1 axopt 4",
+    ),
     Setting("end_time", number(0.0), 1.0, "end of the analysis", "card 2 endtime"),
     Setting("step_factor", number(0.0), 0.8, "factor on the critical time step", "card 2 tssf"),
     Setting("initial_step", number(0.0), 0.0, "first time step; 0: automatic", "card 2 itss"),

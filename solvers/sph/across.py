@@ -140,9 +140,29 @@ def pair_normal(i, j, z, dx, dy, dz, arrays):
 
 @kernel
 def interface_force(
-    i0, i1, first, count, rows, shape, x, y, z, s, weight, h, volume_exponent, normal, material, body, force
+    i0,
+    i1,
+    first,
+    count,
+    rows,
+    shape,
+    x,
+    y,
+    z,
+    s,
+    weight,
+    h,
+    volume_exponent,
+    normal,
+    material,
+    body,
+    rows_apart,
+    force,
 ):
-    """Adds to force[3] what particles of other materials do to those of material `body` through the momentum sum."""
+    """Adds to force[3] what particles of other materials do to those of material `body` through the momentum sum.
+
+    rows_apart: None, or anything where s has all d*d components (with the gradient correction).
+    """
     reach2 = shape.support * shape.support
     for i in range(i0, i1):
         if material[i] != body:
@@ -161,7 +181,16 @@ def interface_force(
             q2 = r2 / (mean * mean) + TINY
             iq = inverse_root(q2)
             factor = weight[i] * weight[j] * normal * mean**volume_exponent * shape_slope(shape, q2 * iq, iq)
-            if z is not None:
+            if rows_apart is not None and z is not None:
+                for axis in range(3):
+                    row = 3 * axis
+                    pair = (s[row, i] + s[row, j]) * dx + (s[row + 1, i] + s[row + 1, j]) * dy
+                    force[axis] += factor * (pair + (s[row + 2, i] + s[row + 2, j]) * dz)
+            elif rows_apart is not None:
+                for axis in range(2):
+                    row = 2 * axis
+                    force[axis] += factor * ((s[row, i] + s[row, j]) * dx + (s[row + 1, i] + s[row + 1, j]) * dy)
+            elif z is not None:
                 xy = s[3, i] + s[3, j]
                 yz = s[4, i] + s[4, j]
                 zx = s[5, i] + s[5, j]

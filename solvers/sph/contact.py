@@ -121,7 +121,7 @@ def _walls(problem: Problem, wave: Floats) -> Walls:
     normals = np.array([w.normal for w in problem.walls], dtype=float)
     normals /= np.linalg.norm(normals, axis=1)[:, None]
     none = Coulomb(0.0, 0.0)
-    spacing = (problem.mass / problem.density) ** (1.0 / problem.dimension) / problem.h
+    spacing = problem.sections ** (1.0 / problem.dimension) / problem.h
     radius = [0.5 * float(np.median(spacing[problem.body == b])) if np.any(problem.body == b) else 0.5
               for b in range(len(problem.bodies))]  # fmt: skip
     return Walls(

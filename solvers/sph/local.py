@@ -147,8 +147,9 @@ def _reach_in_time(i0, i1, z, arrays):
 def _laws(i0, i1, z, laws, correction, density_rate, stress_rate, heat, wave, reference, dt, arrays, numbers):
     """Laws, nominal stress and volumes of a range; returns a particle that has turned inside out, or -1."""
     each_law(
-        laws, 0, i0, i1, z, max(dt, step.INSTANT), correction, density_rate, stress_rate, heat, wave, arrays, numbers
-    )
+        laws, 0, i0, i1, z, max(dt, step.INSTANT), correction, density_rate, stress_rate, heat, wave, None, arrays,
+        numbers,
+    )  # fmt: skip
     torn = -1.0
     if reference is not None:
         torn = nominal_stress(i0, i1, z, reference, arrays)
@@ -221,8 +222,8 @@ def advance(
                         a = split + (c - slow_chunks) * chunk
                         b = min(n, a + chunk)
                     step.strain(
-                        a, b, n, None, shape, solid, h, line, correction, density_rate, stress_rate, plain, reference,
-                        last if c < slow_chunks else fast_last, arrays, numbers,
+                        a, b, n, None, shape, solid, h, line, correction, density_rate, stress_rate, plain, None,
+                        reference, last if c < slow_chunks else fast_last, arrays, numbers,
                     )  # fmt: skip
                     c = from_chunk + claim(sync, taken)
                 taken += chunks - from_chunk + threads
@@ -273,10 +274,11 @@ def advance(
                         a, b, z, shape, cx, contact, friction, damping, normals, by_normals, planes, wall_slip,
                         contact_heat, last, arrays, numbers,
                     )  # fmt: skip
+                since = last if c < slow_chunks else fast_last
                 own = step.force(
                     a, b, shape, z, h, mass, nearest, line, None, None, None, correction, bx, artificial, heat, None,
-                    wave, None, None, None, None, None, None, None, plain, reference,
-                    last if c < slow_chunks else fast_last, arrays, numbers,
+                    wave, None, None, None, None, None, None, None, plain, None, correction, reference,
+                    since, arrays, numbers,
                 )  # fmt: skip
                 if c < slow_chunks:
                     met = _meet(

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..materials import PLASTIC_STRAIN
 from .problem import Problem
+from .rings import TURN
 from .state import Floats, State
 
 
@@ -30,11 +31,13 @@ def particles(p: Problem, s: State, velocity: Floats, live: int) -> dict[str, Fl
     stress[:, : len(rows)] = rows[:, order].T
     xx, yy, zz, xy, yz, zx = stress.T
     shear = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3.0 * (xy**2 + yz**2 + zx**2)
+    x = s.rows("x")[:, :n]
     volume = s.rows("mass")[0, :n] / s.rows("density")[0, :n]
+    if p.axisymmetric:
+        volume /= TURN * x[0]
     radius = {1: 0.5 * volume, 2: np.sqrt(volume / math.pi), 3: np.cbrt(0.75 * volume / math.pi)}[p.dimension]
     plastic = s.rows("state")[PLASTIC_STRAIN, :n][order] if len(s.rows("state")) else np.zeros(n)
     numbers = np.array([b.number for b in p.bodies])
-    x = s.rows("x")[:, :n]
     return {
         "id": s.id[:n][order],
         "material": numbers[s.material[:n][order]],

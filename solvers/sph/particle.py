@@ -13,7 +13,7 @@ from .nominal import LENGTH
 
 @kernel
 def constitutive(
-    i0, i1, z, number, law, dt, correction, density_rate, stress_rate, heat, wave, arrays, numbers
+    i0, i1, z, number, law, dt, correction, density_rate, stress_rate, heat, wave, hoop, arrays, numbers
 ):  # fmt: skip
     """Density, rotation, stress, viscosity and energy of the particles of one material in a block.
 
@@ -48,6 +48,8 @@ def constitutive(
             d_xx = gradient[0, i] * dt
             d_yy = gradient[3, i] * dt
             d_zz = 0.0
+            if hoop is not None:
+                d_zz = arrays.u[i] / arrays.x_half[i] * dt
             d_xy = 0.5 * (gradient[1, i] + gradient[2, i]) * dt
             d_yz = 0.0
             d_zx = 0.0
@@ -160,30 +162,53 @@ def constitutive(
             s[1, i] = n_xx * b_xy + n_xy * b_yy
             s[2, i] = n_xy * b_xx + n_yy * b_xy
             s[3, i] = n_xy * b_xy + n_yy * b_yy
+            if hoop is not None:
+                s[2, i] *= arrays.x[i]
+                s[3, i] *= arrays.x[i]
+        elif hoop is not None:  # the axial row with the radius, see `rings`
+            s[0, i] = n_xx
+            s[1, i] = n_xy
+            s[2, i] = n_xy * arrays.x[i]
+            s[3, i] = n_yy * arrays.x[i]
         else:
             s[0, i] = n_xx
             s[1, i] = n_yy
             s[2, i] = n_xy
 
 
-def each_law(laws, number, i0, i1, z, dt, correction, density_rate, stress_rate, heat, wave, arrays, numbers):
+def each_law(laws, number, i0, i1, z, dt, correction, density_rate, stress_rate, heat, wave, hoop, arrays, numbers):
     """`constitutive` for every body's law; a tuple of different types is unrolled by recursion."""
     raise NotImplementedError("called from jitted code only")
 
 
 @overload(each_law, jit_options=JIT_OPTIONS)
-def _unrolled(laws, number, i0, i1, z, dt, correction, density_rate, stress_rate, heat, wave, arrays, numbers):
+def _unrolled(laws, number, i0, i1, z, dt, correction, density_rate, stress_rate, heat, wave, hoop, arrays, numbers):
     if len(laws) == 0:
 
-        def none(laws, number, i0, i1, z, dt, correction, density_rate, stress_rate, heat, wave, arrays, numbers):
+        def none(laws, number, i0, i1, z, dt, correction, density_rate, stress_rate, heat, wave, hoop, arrays, numbers):
             pass
 
         return none
 
-    def each(laws, number, i0, i1, z, dt, correction, density_rate, stress_rate, heat, wave, arrays, numbers):
-        constitutive(i0, i1, z, number, laws[0], dt, correction, density_rate, stress_rate, heat, wave, arrays, numbers)
+    def each(laws, number, i0, i1, z, dt, correction, density_rate, stress_rate, heat, wave, hoop, arrays, numbers):
+        constitutive(
+            i0, i1, z, number, laws[0], dt, correction, density_rate, stress_rate, heat, wave, hoop, arrays, numbers
+        )
         each_law(
-            laws[1:], number + 1, i0, i1, z, dt, correction, density_rate, stress_rate, heat, wave, arrays, numbers
+            laws[1:],
+            number + 1,
+            i0,
+            i1,
+            z,
+            dt,
+            correction,
+            density_rate,
+            stress_rate,
+            heat,
+            wave,
+            hoop,
+            arrays,
+            numbers,
         )
 
     return each
@@ -336,7 +361,7 @@ def critical_step(i0, i1, z, wave, numbers, arrays):
         if z is not None:
             speed2 += arrays.w[i] ** 2
         if option == 0:
-            length = (arrays.mass[i] / arrays.density[i]) ** (1.0 / numbers.dimension)
+            length = arrays.volume[i] ** (1.0 / numbers.dimension)
             trace = arrays.gradient[0, i]
             if z is not None:
                 trace += arrays.gradient[4, i] + arrays.gradient[8, i]

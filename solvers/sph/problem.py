@@ -11,6 +11,7 @@ from ..contact.friction import Coulomb, Drag
 from ..contact.plane import Wall
 from ..materials import Law
 from .ghosts import PERIODIC, Plane
+from .rings import AXIS, TURN
 from .smoothing import shape_of
 
 Floats = NDArray[np.float64]
@@ -81,7 +82,8 @@ class Problem:
     friction_between: of two bodies (indices) where that is another. walls: rigid planes. contact_by_normals: forces
     between bodies act along the normals of the contact: particles then slide over a coarse wall as over a smooth one
     (their centres turn nothing exactly). local_steps: stiff bodies take several steps within one of the others
-    (`local`); None: where that goes and is worth while.
+    (`local`); None: where that goes and is worth while. axisymmetric: a plane problem whose x is the distance from the
+    axis y; masses are those of whole rings (`rings`).
     """
 
     dimension: int
@@ -120,6 +122,7 @@ class Problem:
     walls: tuple[Wall, ...] = ()
     contact_by_normals: bool = False
     local_steps: bool | None = False
+    axisymmetric: bool = False
 
     def __post_init__(self) -> None:
         n = len(self.x)
@@ -154,8 +157,44 @@ class Problem:
             raise ValueError("contact by normals needs the potential or pinballs")
         if not 0.0 <= self.contact_damping <= 1.0:
             raise ValueError(f"contact damping {self.contact_damping!r} must lie between 0 and 1")
+        if self.axisymmetric:
+            self._check_revolution()
         if self.body.min() < 0 or self.body.max() >= len(self.bodies):
             raise ValueError("a particle's body is not among the bodies")
+
+    def _check_revolution(self) -> None:
+        """Raises ValueError for what a body of revolution does not have."""
+        if self.dimension != 2:
+            raise ValueError("a body of revolution is a problem of 2 dimensions")
+        if not np.all(self.x[:, 0] > 0.0):
+            raise ValueError("a particle lies on the axis or beyond it: x is the radius, above 0")
+        if AXIS not in self.planes:
+            raise ValueError("a body of revolution needs its axis x = 0 among the symmetry planes")
+        refused = {
+            "the total-Lagrangian formulation": any(b.lagrangian for b in self.bodies),
+            "contact by the potential or by pinballs": self.apart,
+            "artificial stress": self.cures.artificial_stress > 0.0,
+            "XSPH": self.cures.xsph > 0.0,
+            "pair viscosity": any(b.alpha or b.beta for b in self.bodies),
+            "a wall that bears its neighbours' stress": any(b.bearing for b in self.bodies),
+            "another plane below along x than the axis": any(
+                p.axis == 0 and p.side < 0 and p != AXIS for p in self.planes
+            ),
+            "a periodic plane across x": any(p.axis == 0 and p.kind == PERIODIC for p in self.planes),
+            "a rigid plane that is not normal to the axis": any(w.normal[0] != 0.0 for w in self.walls),
+            "a body force across the axis": self.body_force[0] != 0.0
+            or (self.body_curve is not None and bool(np.any(self.body_curve[1][:, 0]))),
+            "what the original program does": self.original,
+        }
+        for what, asked in refused.items():
+            if asked:
+                raise ValueError(f"an axisymmetric run does not go with {what}")
+
+    @property
+    def sections(self) -> Floats:
+        """(n,) volumes of the particles, in as many dimensions as the sums have: of rings the areas of sections."""
+        volume = self.mass / self.density
+        return volume / (TURN * self.x[:, 0]) if self.axisymmetric else volume
 
     @property
     def apart(self) -> bool:

@@ -26,7 +26,7 @@ def uniform_mass(p: Problem) -> bool:
 
 def is_mixed(p: Problem) -> bool:
     """Whether bodies of different density are each other's neighbours; the sums then suit that (see `pairs`)."""
-    return len({b.density for b in p.bodies}) > 1 and not p.apart and not p.original
+    return p.axisymmetric or (len({b.density for b in p.bodies}) > 1 and not p.apart and not p.original)
 
 
 def rows_of(p: Problem, contact: Contact, cures: Cures, *, local: bool) -> Rows:
@@ -49,6 +49,7 @@ def rows_of(p: Problem, contact: Contact, cures: Cures, *, local: bool) -> Rows:
         wall_slip=contact.wall_slip,
         lagrangian=any(b.lagrangian for b in p.bodies),
         local=local,
+        hoop=p.axisymmetric,
     )
 
 
@@ -57,7 +58,7 @@ def numbers_of(p: Problem, contact: Contact, shape: Shape, *, mirrors: bool) -> 
     h = float(p.h[0])
     normal = normaliser(shape, p.dimension)
     times, values = p.body_curve or (np.zeros(2), np.zeros((2, 3)))
-    spacing = float(np.median((p.mass / p.density) ** (1.0 / p.dimension) / p.h))
+    spacing = float(np.median(p.sections ** (1.0 / p.dimension) / p.h))
     wave = np.array([sound_speed(b.law, b.density, _first_energy(p, k)) for k, b in enumerate(p.bodies)])
     scale = normal / h ** (p.dimension + 2) if uniform_h(p) else normal
     return Numbers(
@@ -106,7 +107,7 @@ def fill(s: State, p: Problem, numbers: Numbers, has: Rows, shape: Shape) -> Non
     n = s.n
     for name, values in (("x", p.x), ("x_half", p.x), ("x_start", p.x), ("u", p.v)):
         s.rows(name)[:, :n] = values.T[: s.d]
-    for name, scalar in (("mass", p.mass), ("h", p.h), ("density", p.density), ("volume", p.mass / p.density)):
+    for name, scalar in (("mass", p.mass), ("h", p.h), ("density", p.density), ("volume", p.sections)):
         s.rows(name)[0, :n] = scalar
     if p.energy is not None:
         s.rows("energy")[0, :n] = p.energy
@@ -147,7 +148,8 @@ def described(p: Problem, contact: Contact, cures: Cures, has: Rows, threads: in
         "as the original program": p.original,
     }
     return (
-        f"{p.dimension}D, {p.kernel} kernel, {'one' if uniform_h(p) else 'variable'} h, "
+        f"{'axisymmetric' if p.axisymmetric else f'{p.dimension}D'}, {p.kernel} kernel, "
+        f"{'one' if uniform_h(p) else 'variable'} h, "
         f"{'one' if uniform_mass(p) else 'variable'} mass, laws: {laws}, "
         f"contact: {contact.name(len(p.bodies))}, step: {STEP_OPTIONS[p.step_option]}, {threads} thread(s)"
         + "".join(f", {term}" for term, there in beyond.items() if there)

@@ -22,6 +22,7 @@ from ..threads import available, run
 from . import across, blame, ghosts, local, measures, probes, reference, setup, step
 from .contact import contact_of
 from .problem import Cures, Problem
+from .rings import TURN
 from .smoothing import shape_of
 from .state import Arrays, State
 
@@ -59,6 +60,7 @@ class Solver:
         self._inner = np.zeros(local.INNER)
         self._slow = n if self._stiff is None else int(np.count_nonzero(~self._stiff[problem.body]))
         has = self._has = setup.rows_of(problem, self._contact, cures, local=self._stiff is not None)
+        self._rows_apart = True if has.correction or has.hoop else None
         self._state = State(n, problem.dimension, has)
         self._mirrored = any(p.kind in (ghosts.SYMMETRY, ghosts.PERIODIC) for p in problem.planes)
         self._progress = np.zeros(step.PROGRESS)
@@ -183,8 +185,8 @@ class Solver:
             None if images is None else images.sign, None if images is None else images.shift, self._mirrors,
             self._contact.friction, self._contact.damping, self._contact.normals, self._contact.by_normals,
             self._contact.walls, a.wall_slip if has.wall_slip else None, a.contact_heat,
-            True if self._plain else None, self._reference, a, self._numbers, self._laws, self._progress,
-            float(until), float(pause), steps, self._spare**2,
+            True if self._plain else None, a.hoop, self._rows_apart, self._reference, a, self._numbers, self._laws,
+            self._progress, float(until), float(pause), steps, self._spare**2,
         )  # fmt: skip
         return int(found[0])
 
@@ -278,9 +280,8 @@ class Solver:
         found = self._images = ghosts.place_images(s, self.problem.planes, self.live, reach)
         a = self._arrays()
         z = a.z if s.d == 3 else None
-        correction = a.correction if self._has.correction else None
         ghosts.follow_motion(0, len(found), self.n, z, found.source, found.sign, found.shift, a)
-        ghosts.follow_stress(0, len(found), self.n, z, correction, found.source, found.sign, a)
+        ghosts.follow_stress(0, len(found), self.n, z, self._rows_apart, found.source, found.sign, a)
 
     def _collapsed(self) -> Diverged:
         return blame.collapsed(self.problem, self._state, self._arrays(), self.live, self.step, self.dt)
@@ -318,9 +319,11 @@ class Solver:
         if len(self.problem.bodies) > 1 and not self.problem.apart:
             across.interface_force(
                 0, self.live, a.first, a.count, a.rows, self._shape, a.x, a.y, a.z, a.s,
-                a.volume if self._mixed else a.mass, a.h,
-                -(self.problem.dimension + 2.0), self._numbers.normal, a.material, 0, force,
+                a.volume if self._mixed else a.mass, a.h, -(self.problem.dimension + 2.0), self._numbers.normal,
+                a.material, 0, self._rows_apart, force,
             )  # fmt: skip
+        if self.problem.axisymmetric:  # of whole rings; across the axis it is none
+            force *= (0.0, TURN, 0.0)
         return force
 
     def history(self) -> dict[str, float]:
@@ -335,6 +338,8 @@ class Solver:
         stored = {name: energies.pop(name) for name in STORED}
         momentum = np.zeros(3)
         momentum[: s.d] = (self._velocity() * s.rows("mass")[0, :n]).sum(axis=1)
+        if self.problem.axisymmetric:
+            momentum[0] = 0.0  # of a ring
         force = self._contact_force()
         plastic = s.rows("state")[PLASTIC_STRAIN, :n] if len(s.rows("state")) else np.zeros(1)
         return {

@@ -32,7 +32,7 @@ class Arrays(NamedTuple):
     slid, the load of friction (d + 2, m); wall_slip: the same for each wall; colour: normal to other bodies, mobilised:
     traction by normal force, (d, m) each (see `slip`). Of total-Lagrangian bodies: deformation (d*d): F - I;
     hourglass: rows of `nominal`; nominal (d*d): V P M^-1 - kappa (F - I)/2. held (2 d, m): of
-    stiff bodies with local steps, see `local`.
+    stiff bodies with local steps, see `local`. hoop: r u, see `rings`.
     """
 
     x: Any
@@ -94,6 +94,7 @@ class Arrays(NamedTuple):
     wall_slip: Any
     colour: Any
     mobilised: Any
+    hoop: Any
     x_start: Any
     y_start: Any
     z_start: Any
@@ -160,7 +161,8 @@ class Rows:
 
     state: of the laws; the others say whether: contact, correction, artificial stress, pair viscosity (heat), density
     and stress diffusion, xsph, a changing h, a changing body force, a changing wave speed, heat of contact, slip
-    between bodies, normals; wall_slip: walls with friction; total-Lagrangian bodies; local steps.
+    between bodies, normals; wall_slip: walls with friction; total-Lagrangian bodies; local steps; hoop stress of
+    a body of revolution.
     """
 
     state: int = 0
@@ -180,6 +182,7 @@ class Rows:
     wall_slip: int = 0
     lagrangian: bool = False
     local: bool = False
+    hoop: bool = False
 
 
 class State:
@@ -205,11 +208,11 @@ class State:
             "deformation": d * d if has.lagrangian else 0, "hourglass": HOURGLASS if has.lagrangian else 0,
             "held": 2 * d * has.local,
             "state": has.state,
-            "gradient": d * d, "s": (d * d if has.correction else 6 if solid else 3), "nearest": 1,
+            "gradient": d * d, "s": (d * d if has.correction or has.hoop else 6 if solid else 3), "nearest": 1,
             "c": d if has.contact else 0, "correction": (6 if solid else 3) if has.correction else 0,
             "density_rate": int(has.density_rate), "stress_rate": six if has.stress_rate else 0,
             "smoothed": d if has.xsph else 0, "colour": d * has.normals, "mobilised": d * has.slip,
-            "nominal": d * d if has.lagrangian else 0,
+            "nominal": d * d if has.lagrangian else 0, "hoop": int(has.hoop),
         }  # fmt: skip
         self.slices: dict[str, slice] = {}
         at = 0
@@ -328,6 +331,7 @@ class State:
             wall_slip=self.rows("wall_slip"),
             colour=self.rows("colour"),
             mobilised=self.rows("mobilised"),
+            hoop=self.row("hoop"),
             deformation=self.rows("deformation"),
             hourglass=self.rows("hourglass"),
             nominal=self.rows("nominal"),

@@ -7,7 +7,8 @@ Leap-frog: positions and stresses live at whole steps, velocities at half steps.
     a, nearest distance, contact, the next dt                              force
 `prepare` does the last two once at the start. The original program numbers the same states differently; see `solver`.
 What a scene does not have is None in `advance`'s arguments and is not compiled at all. Bodies of the total-Lagrangian
-formulation (reference) have loops of their own for strain and force; plain: whether there are others.
+formulation (reference) have loops of their own for strain and force; plain: whether there are others. rows_apart: None,
+or True where s has all its components: with the gradient correction, and of bodies of revolution (hoop, see rings).
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import numpy as np
 
 from ..jit import kernel
 from ..threads import barrier, claim, share
-from . import across, bearing, cures, ghosts, lagrangian, nominal, pairs, slip, walls
+from . import across, bearing, cures, ghosts, lagrangian, nominal, pairs, rings, slip, walls
 from .particle import critical_step, drift, each_law, half_work, kick
 
 # entries of `progress`, the loop's own memory
@@ -31,21 +32,25 @@ CHUNK = 256  # particles that a thread takes on at a time
 LANDING = 8  # so many steps before a wanted time the step is trimmed to meet it
 GROWTH = 1.1  # a step grows by no more than this
 INSTANT = 1e-300  # a duration that divides no strain rate by zero
+TOWARDS = 0.5  # of its distance from the axis a particle may go in a critical step
 COLLAPSE = 1e-7  # a step this small beside the first one will not recover
 
 
 @kernel
 def strain(
-    i0, i1, offset, source, shape, solid, h, line, correction, density_rate, stress_rate, plain, reference, dt, arrays,
-    numbers,
+    i0, i1, offset, source, shape, solid, h, line, correction, density_rate, stress_rate, plain, hoop, reference, dt,
+    arrays, numbers,
 ):  # fmt: skip
     """Velocity gradients of a range of particles, and the rates of diffusion, all with the old densities."""
+    u = arrays.u if hoop is None else hoop
     if plain is not None:
         pairs.velocity_gradient(
             i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.x_half, arrays.y_half, solid, arrays.z_half,
-            arrays.u, arrays.v, arrays.w, arrays.volume, h, numbers.inverse_h2, numbers.scale, line, arrays.gradient,
+            u, arrays.v, arrays.w, arrays.volume, h, numbers.inverse_h2, numbers.scale, line, arrays.gradient,
             correction,
         )  # fmt: skip
+    if hoop is not None:
+        rings.radial_strain(i0, i1, arrays)
     if reference is not None:
         lagrangian.deformation(i0, i1, solid, dt, reference, arrays)
     if density_rate is not None:
@@ -62,8 +67,8 @@ def strain(
 
 @kernel
 def force(i0, i1, shape, z, h, mass, nearest, line, cx, contact, mixed, correction, bx, artificial, heat, body_work,
-          wave, friction, damping, normals, by_normals, planes, wall_slip, contact_heat, plain, reference, dt, arrays,
-          numbers):  # fmt: skip
+          wave, friction, damping, normals, by_normals, planes, wall_slip, contact_heat, plain, hoop, rows_apart,
+          reference, dt, arrays, numbers):  # fmt: skip
     """Accelerations of a range of particles; returns their critical step."""
     if mixed is not None:
         weight = arrays.volume
@@ -73,12 +78,17 @@ def force(i0, i1, shape, z, h, mass, nearest, line, cx, contact, mixed, correcti
         weight = mass
         density = None
         scale = numbers.force_scale
+    body = numbers.body
+    if hoop is not None:
+        body = rings.NO_FORCE
     if plain is not None:
         pairs.momentum(
             i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.x, arrays.y, z, arrays.s, weight, h,
-            numbers.inverse_h2, scale, line, numbers.body, arrays.ax, arrays.ay, arrays.az, nearest, density,
-            correction, artificial, numbers.inverse_w, bx, arrays.by, arrays.bz,
+            numbers.inverse_h2, scale, line, body, arrays.ax, arrays.ay, arrays.az, nearest, density,
+            rows_apart, artificial, numbers.inverse_w, bx, arrays.by, arrays.bz,
         )  # fmt: skip
+    if hoop is not None:
+        rings.hoop_force(i0, i1, numbers.body, arrays)
     longest = np.inf
     if reference is not None:
         longest = lagrangian.internal_force(i0, i1, z, plain, reference, arrays, numbers)
@@ -96,6 +106,8 @@ def force(i0, i1, shape, z, h, mass, nearest, line, cx, contact, mixed, correcti
     half_work(i0, i1, z, cx, bx, body_work, dt, arrays, numbers)
     if numbers.original:
         least = np.inf
+    if hoop is not None:
+        least = min(least, rings.closest(i0, i1, TOWARDS, arrays))
     return min(longest, least, critical_step(i0, i1, z, wave, numbers, arrays))
 
 
@@ -115,7 +127,7 @@ def advance(
     thread, threads, sync, n, offset, shape, solid, z, h, mass, nearest, line, cx, contact, mixed, correction, bx,
     artificial, h_list, h_start, density_rate, stress_rate, heat, smoothed, smoothing, body_work, wave,
     walled, image_source, image_sign, image_shift, mirrors, friction, damping, normals, by_normals, planes, wall_slip,
-    contact_heat, plain, reference, arrays, numbers, laws, progress, until, pause, steps, reach2,
+    contact_heat, plain, hoop, rows_apart, reference, arrays, numbers, laws, progress, until, pause, steps, reach2,
 ):  # fmt: skip
     """Take up to `steps` steps towards `until`, each thread for its own range; returns why it stopped.
 
@@ -142,24 +154,32 @@ def advance(
                     g0, g1 = share(len(image_source), thread, threads)
                     ghosts.follow_motion(g0, g1, offset, z, image_source, image_sign, image_shift, arrays)
                     barrier(sync, threads)
+                if hoop is not None:
+                    rings.flow(i0, i1, hoop, arrays)
+                    g0, g1 = share(len(image_source), thread, threads)
+                    rings.flow(offset + g0, offset + g1, hoop, arrays)
+                    barrier(sync, threads)
                 c = claim(sync, taken)
                 while c < chunks:
                     strain(
                         c * chunk, min(n, (c + 1) * chunk), offset, image_source, shape, solid, h, line, correction,
-                        density_rate, stress_rate, plain, reference, last, arrays, numbers,
+                        density_rate, stress_rate, plain, hoop, reference, last, arrays, numbers,
                     )  # fmt: skip
                     c = claim(sync, taken)
                 taken += chunks + threads
                 barrier(sync, threads)  # the strain of all particles needs the old volumes
             # at the very start without strain: what an equation of state makes of the first densities
             each_law(
-                laws, 0, i0, i1, z, max(last, INSTANT), correction, density_rate, stress_rate, heat, wave, arrays,
-                numbers,
+                laws, 0, i0, i1, z, max(last, INSTANT), correction, density_rate, stress_rate, heat, wave, hoop,
+                arrays, numbers,
             )  # fmt: skip
             if reference is not None:
                 arrays.reduced[thread, 3] = nominal.nominal_stress(i0, i1, z, reference, arrays)
-            for i in range(i0, i1):
-                arrays.volume[i] = arrays.mass[i] / arrays.density[i]
+            if hoop is not None:
+                rings.areas(i0, i1, arrays)
+            else:
+                for i in range(i0, i1):
+                    arrays.volume[i] = arrays.mass[i] / arrays.density[i]
             barrier(sync, threads)
             if reference is not None:
                 bad = arrays.reduced[:threads, 3].max()
@@ -168,7 +188,7 @@ def advance(
                     break
             if image_source is not None:
                 g0, g1 = share(len(image_source), thread, threads)
-                ghosts.follow_stress(g0, g1, offset, z, correction, image_source, image_sign, arrays)
+                ghosts.follow_stress(g0, g1, offset, z, rows_apart, image_source, image_sign, arrays)
                 if reference is not None:
                     nominal.follow(g0, g1, offset, z, image_source, image_sign, arrays)
                 barrier(sync, threads)
@@ -177,7 +197,7 @@ def advance(
                 barrier(sync, threads)
             if walled is not None and image_source is not None:
                 g0, g1 = share(len(image_source), thread, threads)
-                ghosts.follow_stress(g0, g1, offset, z, correction, image_source, image_sign, arrays)
+                ghosts.follow_stress(g0, g1, offset, z, rows_apart, image_source, image_sign, arrays)
                 barrier(sync, threads)
             if body_work is not None and thread == 0:
                 body_force_at(time, numbers)
@@ -194,7 +214,7 @@ def advance(
                 part = force(
                     c * chunk, min(n, (c + 1) * chunk), shape, z, h, mass, nearest, line, cx, contact, mixed,
                     correction, bx, artificial, heat, body_work, wave, friction, damping, normals, by_normals,
-                    planes, wall_slip, contact_heat, plain, reference, last, arrays, numbers,
+                    planes, wall_slip, contact_heat, plain, hoop, rows_apart, reference, last, arrays, numbers,
                 )  # fmt: skip
                 least = min(least, part)
                 c = claim(sync, taken)

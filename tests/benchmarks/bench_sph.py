@@ -89,7 +89,9 @@ def phases(problem: Problem, builds: float) -> dict[str, float]:
             ), n),
         "stress": sum(
             nanoseconds(
-                lambda m=m: particle.constitutive(0, n, a.z, m, law, 1e-12, None, None, None, None, None, a, k), n)
+                lambda m=m: particle.constitutive(
+                    0, n, a.z, m, law, 1e-12, None, None, None, None, None, None, a, k
+                ), n)
             for m in (0, 1)),
         "critical step": nanoseconds(lambda: particle.critical_step(0, n, a.z, None, k, a), n),
         "kick": nanoseconds(lambda: particle.kick(0, n, a.z, None, None, None, 1e-15, 1e-15, a, k), n),

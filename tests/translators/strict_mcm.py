@@ -53,8 +53,9 @@ def read(path: Path) -> Deck:
     assert c.lines[0][78:80].strip() == "2"
     c.next = 1
     dimension, _, materials, count, room, *_ = map(int, c.card("i5", "i5", *["i10"] * 5))
+    assert dimension in (1, 2, 3, 4)
+    dimension = 2 if dimension == 4 else dimension  # axisymmetric
     deck.dimension = dimension
-    assert dimension in (1, 2, 3)
     assert room >= count
     c.card(*["e10"] * 4)
     _, _, _, followed, transducers, *_ = map(int, c.card("e10", "i5", "e10", "i10", "i5", "i10", "i5", "i5"))

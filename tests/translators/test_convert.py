@@ -61,6 +61,22 @@ def test_two_bodies(tmp_path: Path, mesh: Model, same) -> None:
     assert same(read(tmp_path / "two.mcm"), model)
 
 
+def test_a_flat_mesh_turns_round_its_axis(tmp_path: Path, mesh: Model) -> None:
+    """Particles are rings: the right square, 0..3 by 1, is a cylinder."""
+    settings = load_settings(overrides={**MATERIALS, "axisymmetric": True})
+    model, _ = to_particles(mesh, settings, spacing=0.1, parts=["right"])
+    x, mass = model.particles.x, model.particles.mass
+    assert np.allclose(mass, 2.7 * 0.01 * 2.0 * np.pi * x[:, 0], rtol=1e-12)
+    assert model.materials[1].mass == pytest.approx(2.7 * np.pi * 9.0, rel=1e-12)
+    write(model, tmp_path / "turned.mcm")
+    again = read(tmp_path / "turned.mcm")
+    assert again.particle_control.axisymmetric
+    assert again.particle_control.dimension == again.dimension == 2
+    assert "axisymmetric" in again.warnings[0]
+    with pytest.raises(InputError, match="x is the radius"):
+        to_particles(mesh, settings, spacing=0.1)
+
+
 def test_one_part_by_name(mesh: Model) -> None:
     model, report = to_particles(mesh, load_settings(overrides=MATERIALS), spacing=0.1, parts=["right"])
     assert (len(model.particles), model.materials[1].name) == (300, "right")

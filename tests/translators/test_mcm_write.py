@@ -71,6 +71,7 @@ def models(draw: st.DrawFn) -> Model:
     positive = TEN.map(abs)
     control = ParticleControl(
         dimension=dimension,
+        axisymmetric=dimension == 2 and draw(st.booleans()),
         discretisation=draw(st.integers(0, 1)),
         end_time=draw(positive),
         step_factor=draw(positive),

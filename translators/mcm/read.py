@@ -13,6 +13,7 @@ from zrno.translators.model import Material, Model, ParticleControl, Particles, 
 from zrno.translators.text import Card, Cards, Fault, InputError, read_bytes
 
 # What decides which cards follow, right after the control cards and after the particles.
+AXISYMMETRIC = 4  # of axopt
 _DECIDE_MATERIALS = ("axopt", "nummat", "np", "contact_option")
 _DECIDE_SECTIONS = (
     "thnode", "transducers", "init_v", "massopt", "init_h", "init_rhoe", "contact", "symmetry", "nthpx", "nthpy",
@@ -115,7 +116,12 @@ class _Deck:
         interpolation = card["interpolation"]
         self._check_control(first, time, history, options, card["h_opt"])
         c = self.control
-        c.dimension = first["axopt"]
+        c.axisymmetric = first["axopt"] == AXISYMMETRIC
+        c.dimension = 2 if c.axisymmetric else first["axopt"]
+        if c.axisymmetric:
+            self.model.warnings.append(
+                "axopt 4, axisymmetric, is taken as x the radius, y the axis; MCM itself refuses it"
+            )
         c.discretisation = first["disctype"] if self.version == 2 else {0: 0, 3: 2, 5: 1}.get(first["disctype"], 0)
         c.end_time, c.step_factor, c.initial_step = time["endtime"], time["tssf"], time["itss"]
         c.output_interval, c.state_option = history["stpltime"], history["state_opt"]
@@ -137,7 +143,9 @@ class _Deck:
         return card
 
     def _check_control(self, first: Card, time: Card, history: Card, options: Card, h_opt: Card) -> None:
-        first.check("axopt", first["axopt"] in (1, 2, 3), "no such dimension", "1, 2 (plane strain) or 3")
+        first.check(
+            "axopt", first["axopt"] in (1, 2, 3, AXISYMMETRIC), "no such dimension", "1, 2 (plane strain), 3 or 4"
+        )
         allowed = (0, 1, 2) if self.version == 2 else (0, 3, 5)
         first.check("disctype", first["disctype"] in allowed, "no such discretisation", " or ".join(map(str, allowed)))
         first.check("nummat", first["nummat"] > 0, "no materials", "the number of materials, 1 or more")

@@ -128,8 +128,8 @@ class _Writer:
         c, p, count = self.control, self.particles, len(self.particles)
         base = c.base_acceleration or (0.0, 0.0, 0.0)
         rows: list[dict[str, Any]] = [
-            {"axopt": c.dimension, "disctype": c.discretisation, "nummat": len(self.materials), "np": count,
-             "max_np": max(c.max_particles, count)},
+            {"axopt": 4 if c.axisymmetric else c.dimension, "disctype": c.discretisation,
+             "nummat": len(self.materials), "np": count, "max_np": max(c.max_particles, count)},
             {"endtime": c.end_time, "tssf": c.step_factor, "itss": c.initial_step, "drelax": c.dynamic_relaxation},
             {"stpltime": c.output_interval, "state_opt": c.state_option, "thpltime": c.history_interval,
              "thnode": len(c.history_particles), "transducers": len(c.transducers),

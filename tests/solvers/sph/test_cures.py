@@ -75,7 +75,7 @@ def turned(problem: Problem, turns: int, steps: int, start: tuple[float, ...]) -
             None, numbers.inverse_h2, numbers.scale, None, a.gradient, correction,
         )  # fmt: skip
         particle.constitutive(
-            0, n, None, 0, ELASTIC, 1.0, correction, None, None, None, None, a, numbers
+            0, n, None, 0, ELASTIC, 1.0, correction, None, None, None, None, None, a, numbers
         )  # fmt: skip
         s.rows("density")[:, :n] = 1.0
     return s.rows("stress")[:, :n].copy()

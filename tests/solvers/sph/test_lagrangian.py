@@ -69,7 +69,7 @@ def impose(s: Solver, x: np.ndarray, dt: float = 1.0) -> None:
     z = a.z if solid else None
     s._state.rows("x")[: len(x), :n] = x
     lagrangian.deformation(0, n, solid, dt, s._reference, a)
-    particle.constitutive(0, n, z, 0, s._laws[0], dt, None, None, None, None, None, a, s._numbers)
+    particle.constitutive(0, n, z, 0, s._laws[0], dt, None, None, None, None, None, None, a, s._numbers)
     assert nominal_stress(0, n, z, s._reference, a) == -1.0
     lagrangian.internal_force(0, n, z, None, s._reference, a, s._numbers)
 
