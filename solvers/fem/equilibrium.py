@@ -16,7 +16,7 @@ from .shape import Shape
 
 Floats = NDArray[np.float64]
 SEARCHED = 0.8  # line search is done where the work along the step stays above this share
-SLACK = 1e-13  # of the largest forces on the way: less is round-off
+SLACK = 1e-12  # of the largest forces on the way: less is round-off
 LEAST = 1e-6  # of the same: what the forces at the end are taken to be at least, as where a structure only turns
 GUESSED = 8  # iterations from a guess; one that takes more was none
 FAST = 0.1  # an iteration that leaves less of the residual than this needs no new factors

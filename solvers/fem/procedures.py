@@ -193,7 +193,9 @@ class Increments(Still):
             if guess is None:
                 raise
             self._wary = WARY
-            shape, internal, trace = equilibrium(solver.assembly, solver.shape, target, dt, how, keep=keep)
+            shape, internal, trace = equilibrium(
+                solver.assembly, solver.shape, target, dt, how, keep=keep, floor=self._largest
+            )
         self._largest = trace.largest
         self._kept = dt if solver.linear else 0.0
         self._before = (shape.u - solver.shape.u, change, dt)
@@ -234,15 +236,17 @@ class Increments(Still):
         return np.zeros(3) if self.mover is None else self.mover.momentum()
 
     def forget(self) -> None:
-        self._before, self._kept, self._largest, self._wary = None, 0.0, 0.0, 0
+        self._before, self._kept, self._wary = None, 0.0, 0
 
     def state(self) -> dict[str, Floats]:
         m = self.mover
-        return {} if m is None else {"velocity": m.velocity, "acceleration": m.acceleration, "last": m.last}
+        moving = {} if m is None else {"velocity": m.velocity, "acceleration": m.acceleration, "last": m.last}
+        return {"largest": np.array(self._largest), **moving}
 
     def restore(self, data: dict[str, Floats]) -> None:
+        self._largest = float(data["largest"])
         if self.mover is not None:
-            for name in self.state():
+            for name in ("velocity", "acceleration", "last"):
                 setattr(self.mover, name, np.array(data[name]))
 
 

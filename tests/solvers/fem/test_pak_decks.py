@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 
 import numpy as np
@@ -105,3 +106,16 @@ def test_an_orthotropic_material_lies_along_the_axes_of_its_group(
     deck = tmp_path / "ortho.dat"
     deck.write_text(text)
     assert _solved(deck).shape.u[:, 0].max() == pytest.approx(10.0 / young)
+
+
+def test_a_structure_that_is_let_be_stays(shared: Path) -> None:
+    """The dissertation's plate once the lift has ended: no load, no motion, and forces of round-off alone."""
+    path = shared / "samples/pak-dat/kipkupa.dat"
+    problem = structure_problem(read(path), str(path))
+    curves = tuple(fem.Curve(np.array([0.0, 5.0, 5.0, 2e4]), np.array([1.0, 1.0, 0.0, 0.0])) for _ in problem.curves)
+    solver = fem.Solver(dataclasses.replace(problem, curves=curves))
+    for _ in range(9):
+        solver.advance(np.inf, 1)
+    assert solver.time == 9.0
+    assert solver.shape.u[:, 2].max() == pytest.approx(0.5, rel=1e-9)
+    assert solver.energies()["internal"] < 1e-9
