@@ -148,10 +148,13 @@ def _group(model: Model, block: ElementBlock, rows: Any, part: int, method: Fem)
     thickness = data.get("thickness")
     if thickness is None and "thickness" in parameters:
         thickness = np.full(len(ids), parameters["thickness"])
+    nodes = block.nodes[rows]
+    if family == "plane":
+        nodes = _counter_clockwise(model, block.kind, nodes)
     return fem.Elements(
         kind=block.kind,
         family=family,
-        nodes=np.ascontiguousarray(block.nodes[rows]),
+        nodes=np.ascontiguousarray(nodes),
         ids=ids,
         material=material.id,
         law=law,
@@ -180,6 +183,25 @@ def _axes(section: Section) -> Any:
         c, s = math.cos(angle), math.sin(angle)
         return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
     return None
+
+
+def _counter_clockwise(model: Model, kind: str, nodes: Any) -> Any:
+    """Plane elements whose nodes run clockwise, as meshers make them, turned: a corner, then the others backwards."""
+    shape = TABLE[kind].shape
+    p = model.xyz[nodes[:, : shape.corners]]
+    after = np.roll(p, -1, axis=1)
+    turned = (p[:, :, 0] * after[:, :, 1] - p[:, :, 1] * after[:, :, 0]).sum(axis=1) < 0.0
+    if not turned.any():
+        return nodes
+    model.warnings.append(f"{int(turned.sum())} {kind} elements run clockwise: turned")
+    k = shape.corners
+    order = [0, *range(k - 1, 0, -1)]
+    if TABLE[kind].mid_edges:
+        order += [*range(2 * k - 1, k - 1, -1)]
+    order += range(len(order), nodes.shape[1])
+    nodes = nodes.copy()
+    nodes[turned] = nodes[turned][:, order]
+    return nodes
 
 
 def _modes(kind: str, asked: int) -> int:

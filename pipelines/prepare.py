@@ -108,14 +108,21 @@ def _solver(
         from zrno.solvers import fem
 
         of_structure = scene.fem if scene else fem_of_options(_section(chosen, "fem"))
-        return fem.Solver(structure_problem(model, str(deck), of_structure), threads=threads)
+        problem = structure_problem(model, str(deck), of_structure)
+        try:
+            return fem.Solver(problem, threads=threads)
+        except fem.Bad as error:
+            raise InputError([Fault(str(deck), 1, 1, f"element {error.element}: {error.cause}")]) from error
+        except fem.Mechanism as error:
+            number = int(model.node_ids[error.node])
+            raise InputError([Fault(str(deck), 1, 1, f"node {number}: {error}")]) from error
     from zrno.pipelines.build import particle_problem
     from zrno.solvers import sph
 
     method = scene.sph if scene else of_options(_section(chosen, "sph"))
     original = chosen.run.get("compat") == "original"
-    problem = particle_problem(model, str(deck), places=places, original=original, method=method)
-    return sph.Solver(problem, threads=threads)
+    particles = particle_problem(model, str(deck), places=places, original=original, method=method)
+    return sph.Solver(particles, threads=threads)
 
 
 def _section(chosen: command_options.Options, name: str) -> dict[str, Any]:

@@ -1,5 +1,7 @@
 """Finite elements: implicit statics and dynamics of solids, plane problems, shells and bars."""
 
+from .assembly import Mechanism
+from .groups.group import Bad
 from .problem import (
     SMALL,
     TOTAL,
@@ -22,12 +24,14 @@ __all__ = [
     "SMALL",
     "TOTAL",
     "UPDATED",
+    "Bad",
     "BodyLoad",
     "Curve",
     "Dynamics",
     "Elements",
     "FaceLoad",
     "Iteration",
+    "Mechanism",
     "Motion",
     "NodalLoad",
     "Path",

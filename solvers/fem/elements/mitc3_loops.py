@@ -26,23 +26,8 @@ from .mitc3 import (
 )
 from .mitc4 import cross_into, dot, to_local
 from .shapes import functions, table
+from .shell_gather import gather
 from .shell_geometry import bending_geometry, of_shift_and_turn, of_turn
-
-
-@kernel
-def _gather(nodes, q, x, u, corner, directors, half, turn, reference, thick, now, moved, turns, finite):
-    for i in range(3):
-        a = nodes[q, i]
-        for m in range(3):
-            reference[i, m] = x[a, m]
-            thick[i, m] = half[q, i] * directors[q, i, m]
-            now[i, m] = x[a, m] + (u[a, m] if finite is not None else 0.0)
-            for k in range(3):
-                turns[i, m, k] = turn[a, m, k] if finite is not None else (1.0 if m == k else 0.0)
-        for c in range(6):
-            moved[i, c] = u[a, c]
-        for m in range(3):
-            corner[i, m] = turns[i, m, 0] * thick[i, 0] + turns[i, m, 1] * thick[i, 1] + turns[i, m, 2] * thick[i, 2]
 
 
 @kernel
@@ -61,7 +46,7 @@ def strains(
     a, b, c = np.empty(3), np.empty(3), np.empty(3)
     many = len(points) * len(layers)
     for q in range(nodes.shape[0]):
-        _gather(nodes, q, x, u, corner, directors, half, turn, reference, thick, now, moved, turns, finite)
+        gather(nodes, q, x, u, corner, directors, half, turn, reference, thick, now, moved, turns, finite)
         for i in range(3):
             for k in range(6):
                 step[i, k] = u[nodes[q, i], k] - before[nodes[q, i], k]
@@ -126,7 +111,7 @@ def integrate(
     many = len(points) * len(layers)
     place = (0, 1, 3, 4, 5)
     for q in range(nodes.shape[0]):
-        _gather(nodes, q, x, u, corner, directors, half, turn, reference, thick, now, moved, turns, finite)
+        gather(nodes, q, x, u, corner, directors, half, turn, reference, thick, now, moved, turns, finite)
         tied_shears(now, corner, metric, tied, base, c)
         forces[q] = 0.0
         drilled[q] = 0.0

@@ -22,27 +22,8 @@ from .mitc4 import (
     to_local,
 )
 from .shapes import functions, table
+from .shell_gather import gather
 from .shell_geometry import bending_geometry, tied_geometry
-
-
-@kernel
-def _gather(nodes, q, x, u, corner, directors, half, turn, reference, thick, now, moved, turns, finite):
-    """One element: first shape (4, 3) and half-thickness directors, those now, displacement (4, 6), nodes' turns."""
-    for i in range(4):
-        a = nodes[q, i]
-        for m in range(3):
-            reference[i, m] = x[a, m]
-            thick[i, m] = half[q, i] * directors[q, i, m]
-            now[i, m] = x[a, m] + (u[a, m] if finite is not None else 0.0)
-            for k in range(3):
-                turns[i, m, k] = turn[a, m, k] if finite is not None else (1.0 if m == k else 0.0)
-        for c in range(6):
-            moved[i, c] = u[a, c]
-        for m in range(3):
-            total = 0.0
-            for k in range(3):
-                total += turns[i, m, k] * thick[i, k]
-            corner[i, m] = total
 
 
 @kernel
@@ -69,7 +50,7 @@ def strains(
     extra, vectors = np.empty((5, 4)), np.empty((3, 3))
     many = len(points) * len(layers)
     for q in range(nodes.shape[0]):
-        _gather(nodes, q, x, u, corner, directors, half, turn, reference, thick, now, moved, turns, finite)
+        gather(nodes, q, x, u, corner, directors, half, turn, reference, thick, now, moved, turns, finite)
         for i in range(4):
             for c in range(6):
                 step[i, c] = u[nodes[q, i], c] - before[nodes[q, i], c]
@@ -147,7 +128,7 @@ def integrate(
     many = len(points) * len(layers)
     place = (0, 1, 3, 4, 5)
     for q in range(nodes.shape[0]):
-        _gather(nodes, q, x, u, corner, directors, half, turn, reference, thick, now, moved, turns, finite)
+        gather(nodes, q, x, u, corner, directors, half, turn, reference, thick, now, moved, turns, finite)
         tied_strains(now, corner, metric, tied, work)
         forces[q] = 0.0
         drilled[q] = 0.0

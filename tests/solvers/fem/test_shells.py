@@ -311,4 +311,3 @@ def test_what_is_wrong_with_an_element_is_said() -> None:
     zero = Shape(np.zeros((4, 6)))
     with pytest.raises(ArithmeticError, match="convex"):
         a.evaluate(zero, zero, 0.0)
-    assert group("quad4", "shell", NODES).kind == "quad4"
