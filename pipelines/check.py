@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from zrno.pipelines.drafts import drafts
-from zrno.pipelines.prepare import refuse_what_is_not_run
+from zrno.pipelines.prepare import check_decks
 from zrno.pipelines.scene import SUFFIXES
 from zrno.pipelines.scene import load as load_scene
 from zrno.pipelines.study_plan import reference_of
@@ -71,15 +71,16 @@ def _scene(path: Path, allow_outside: bool) -> list[dict[str, Any]]:
         except InputError as error:
             row["faults"] += map(asdict, error.faults)
     try:
-        refuse_what_is_not_run(decks)
+        paired = check_decks(decks)
     except InputError as error:
-        row["warnings"] += map(_not_yet, error.faults)
+        row["faults"] += map(asdict, error.faults)
+        return [row]
     made = {path.parent / mesh.target for mesh in scene.meshes}
-    rows = [row, *(_file(deck, allow_outside, paired=len(decks) == 2) for deck in decks if deck not in made)]
+    rows = [row, *(_file(deck, allow_outside, paired=paired) for deck in decks if deck not in made)]
     try:
         with drafts(scene, path.parent, publishing=False, allow_outside=allow_outside) as found:
             for draft in found:
-                model = draft.read()
+                model = draft.read(paired=paired)
                 rows.append(_sound(draft.target, model, draft.places(model)))
                 rows[-1]["warnings"] += [
                     f"dropped: {i['count']} {i['what']} - {i['where']}" for i in draft.result["dropped"]

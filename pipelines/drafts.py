@@ -34,11 +34,11 @@ class Draft:
         """Put the deck in its place."""
         self.path.replace(self.target)
 
-    def read(self) -> Model:
-        """The deck, as if it were at its place. Raises InputError."""
+    def read(self, *, paired: bool = False) -> Model:
+        """The deck, as if it were at its place; paired: see `translators.read`. Raises InputError."""
         there, here = str(self.target), str(self.path)
         try:
-            model = read(self.path)
+            model = read(self.path, paired=paired)
         except InputError as error:
             raise InputError([replace(fault, path=there) for fault in error.faults]) from error
         model.warnings = [warning.replace(here, there) for warning in model.warnings]

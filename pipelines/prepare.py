@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 from zrno.pipelines import options as command_options
 from zrno.pipelines import scene as scenes
 from zrno.pipelines.checkpoint import load_latest
+from zrno.pipelines.coupling_method import Coupling
+from zrno.pipelines.coupling_method import of_options as coupling_of_options
 from zrno.pipelines.drafts import Draft, drafts
 from zrno.pipelines.fem_method import of_options as fem_of_options
 from zrno.pipelines.manifest import digests
@@ -24,23 +26,28 @@ from zrno.translators.text import Fault, InputError
 from zrno.translators.yaml_marks import Place, did_you_mean
 
 if TYPE_CHECKING:
-    from zrno.solvers import fem, sph
+    from zrno.solvers import coupling, fem, sph
+
+    Solver = sph.Solver | fem.Solver | coupling.Coupled
+
+OF_DECKS = ("sph.", "fem.", "coupling.")  # sections of a scene that go with bare decks too
 
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """A run that can begin. deck: at its place, its SHA-256 in digest; made: what `convert` returns of each deck made.
+    """A run that can begin. decks: at their places, SHA-256 of each in digest; models: of each, the particles' first;
+    made: what `convert` returns of each deck made.
 
     state: the checkpoint that the solver stands at, None at the start; started: when the deck had been read
     (`time.perf_counter`).
     """
 
     scene: Scene | None
-    deck: Path
+    decks: list[Path]
     digest: dict[str, str]
-    model: Model
+    models: list[Model]
     made: list[dict[str, Any]]
-    solver: sph.Solver | fem.Solver
+    solver: Solver
     state: Mapping[str, Any] | None
     started: float
 
@@ -59,7 +66,7 @@ def prepare(
     Raises InputError for bad input, ValueError for a checkpoint that does not fit.
     """
     scene, decks = _decks(paths, chosen)
-    refuse_what_is_not_run(decks)
+    paired = check_decks(decks)
     if scene is not None and scene.coupling is not None and len(decks) == 1:
         message = "coupling is of grain and structure, and this scene has one deck"
         expected = "two decks; bodies of one deck meet by sph.contact"
@@ -69,20 +76,23 @@ def prepare(
     made: Sequence[Draft]
     making = drafts(scene, paths[0].parent, publishing=True, allow_outside=allow_outside) if scene else nullcontext(())
     with making as made:
-        deck = decks[0]
-        draft = next((draft for draft in made if draft.target == deck), None)
-        model = draft.read() if draft else read(deck)
+        models, places, digest = [], {}, {}
+        for deck in decks:
+            draft = next((draft for draft in made if draft.target == deck), None)
+            model = draft.read(paired=paired) if draft else read(deck, paired=paired)
+            if draft and model.particle_control is not None:
+                places = draft.places(model)
+            if scene is None and (model.particle_control is not None or not paired):
+                places = command_options.apply(chosen.settings, model)
+            models.append(model)
+            digest[str(deck)] = next(iter(digests([draft.path if draft else deck]).values()))
         started = time.perf_counter()
-        places = draft.places(model) if draft else {}
-        if scene is None:
-            places = command_options.apply(chosen.settings, model)
-        digest = {str(deck): next(iter(digests([draft.path if draft else deck]).values()))}
         try:
-            solver = _solver(model, deck, scene, chosen, places, threads)
+            solver = _solver(models, decks, scene, chosen, places, threads)
         except ValueError as error:  # things that do not go together
             if isinstance(error, InputError):
                 raise
-            raise InputError([Fault(str(deck), 1, 1, str(error))]) from error
+            raise InputError([Fault(str(decks[0]), 1, 1, str(error))]) from error
         state = load_latest(directory, inputs=digest) if resume else None
         if state is not None:
             solver.restore(dict(state))
@@ -91,38 +101,56 @@ def prepare(
         directory.mkdir(parents=True, exist_ok=True)
         for draft in made:
             draft.publish()
-        return Prepared(scene, deck, digest, model, [d.result for d in made], solver, state, started)
+        return Prepared(scene, decks, digest, models, [d.result for d in made], solver, state, started)
 
 
 def _solver(
-    model: Model,
-    deck: Path,
+    models: Sequence[Model],
+    decks: Sequence[Path],
     scene: Scene | None,
     chosen: command_options.Options,
     places: Mapping[str, Place],
     threads: int | None,
-) -> sph.Solver | fem.Solver:
-    """The solver of a deck: finite elements of a .dat, particles of an .mcm."""
+) -> Solver:
+    """The solver of a deck: finite elements of a .dat, particles of an .mcm, both together of a pair."""
+    original = chosen.run.get("compat") == "original"
+    of_structure = scene.fem if scene else fem_of_options(_section(chosen, "fem"))
+    of_particles = scene.sph if scene else of_options(_section(chosen, "sph"))
+    if len(models) == 2:
+        from zrno.pipelines.build_coupled import coupled_problem
+        from zrno.solvers import sph
+        from zrno.solvers.coupling import Coupled
+
+        how = (scene.coupling or Coupling()) if scene else coupling_of_options(_section(chosen, "coupling"))
+        particles, structure, exchange = coupled_problem(
+            models[0], models[1], (str(decks[0]), str(decks[1])), how, places=places, original=original,
+            of_particles=of_particles, of_structure=of_structure,
+        )  # fmt: skip
+        steel = _structure(structure, models[1], decks[1], threads)
+        return Coupled(steel, sph.Solver(particles, threads=threads), exchange)
+    model, deck = models[0], decks[0]
     if model.fem_control is not None:
         from zrno.pipelines.build_fem import structure_problem
-        from zrno.solvers import fem
 
-        of_structure = scene.fem if scene else fem_of_options(_section(chosen, "fem"))
-        problem = structure_problem(model, str(deck), of_structure)
-        try:
-            return fem.Solver(problem, threads=threads)
-        except fem.Bad as error:
-            raise InputError([Fault(str(deck), 1, 1, f"element {error.element}: {error.cause}")]) from error
-        except fem.Mechanism as error:
-            number = int(model.node_ids[error.node])
-            raise InputError([Fault(str(deck), 1, 1, f"node {number}: {error}")]) from error
+        return _structure(structure_problem(model, str(deck), of_structure), model, deck, threads)
     from zrno.pipelines.build import particle_problem
     from zrno.solvers import sph
 
-    method = scene.sph if scene else of_options(_section(chosen, "sph"))
-    original = chosen.run.get("compat") == "original"
-    particles = particle_problem(model, str(deck), places=places, original=original, method=method)
-    return sph.Solver(particles, threads=threads)
+    problem = particle_problem(model, str(deck), places=places, original=original, method=of_particles)
+    return sph.Solver(problem, threads=threads)
+
+
+def _structure(problem: fem.Problem, model: Model, deck: Path, threads: int | None) -> fem.Solver:
+    """The solver of a structure; what cannot be set up is a fault of its deck."""
+    from zrno.solvers import fem
+
+    try:
+        return fem.Solver(problem, threads=threads)
+    except fem.Bad as error:
+        raise InputError([Fault(str(deck), 1, 1, f"element {error.element}: {error.cause}")]) from error
+    except fem.Mechanism as error:
+        number = int(model.node_ids[error.node])
+        raise InputError([Fault(str(deck), 1, 1, f"node {number}: {error}")]) from error
 
 
 def _section(chosen: command_options.Options, name: str) -> dict[str, Any]:
@@ -130,10 +158,17 @@ def _section(chosen: command_options.Options, name: str) -> dict[str, Any]:
     return {key: value for key, value in chosen.scene.items() if key.startswith(f"{name}.")}
 
 
-def refuse_what_is_not_run(decks: Sequence[Path]) -> None:
-    """Refuse what later versions will run. Raises InputError."""
-    if len(decks) != 1:
-        raise InputError([Fault(str(decks[-1]), 1, 1, "one run takes one deck", "", "one .mcm, one .dat or one scene")])
+def check_decks(decks: list[Path]) -> bool:
+    """Whether decks are a pair, the particles' then first. Raises InputError for what makes no run."""
+    kinds = [deck.suffix.lower() for deck in decks]
+    if len(decks) == 1:
+        return False
+    if sorted(kinds) != [".dat", ".mcm"]:
+        said = ", ".join(deck.name for deck in decks)
+        expected = "one .mcm, one .dat, one of each (coupled), or one scene"
+        raise InputError([Fault(str(decks[-1]), 1, 1, "these do not make a run", said, expected)])
+    decks.sort(key=lambda deck: deck.suffix.lower() != ".mcm")
+    return True
 
 
 def _decks(paths: Sequence[Path], chosen: command_options.Options) -> tuple[Scene | None, list[Path]]:
@@ -141,13 +176,13 @@ def _decks(paths: Sequence[Path], chosen: command_options.Options) -> tuple[Scen
     if len(paths) == 1 and paths[0].suffix.lower() in scenes.SUFFIXES:
         scene = scenes.load(paths[0], chosen.scene)
         return scene, [paths[0].parent / deck for deck in scene.decks]
-    unused = [key for key in chosen.scene if key not in chosen.settings and not key.startswith(("sph.", "fem."))]
+    unused = [key for key in chosen.scene if key not in chosen.settings and not key.startswith(OF_DECKS)]
     if unused:
         raise InputError([Fault("--set", 1, 1, f"{key} is for scenes", key, "a scene") for key in unused])
     return None, list(paths)
 
 
-def _check_pictures(scene: Scene, solver: sph.Solver | fem.Solver) -> None:
+def _check_pictures(scene: Scene, solver: Solver) -> None:
     """The fields that a scene's pictures show are fields of this solver's frames. Raises InputError."""
     if not scene.render:
         return

@@ -71,7 +71,9 @@ def run(
     known = {} if known is None else known
     known |= {"steps": 0, "time": 0.0}
     ready = prepare(paths, chosen, directory, threads=threads, resume=resume, allow_outside=allow_outside)
-    scene, deck, model, solver, state = ready.scene, ready.deck, ready.model, ready.solver, ready.state
+    scene, solver, state = ready.scene, ready.solver, ready.state
+    model = ready.models[0]
+    count = _counts(ready.models)
 
     from zrno.solvers.jit import compile_seconds
     from zrno.solvers.time import run as run_to_end
@@ -79,7 +81,9 @@ def run(
     end = solver.problem.end_time
     end = end if until is None else min(end, until)
 
-    series, history, checkpointer = _observers(model, scene, directory, end, ready.digest, resume=state is not None)
+    series, history, checkpointer = _observers(
+        ready.models, scene, directory, end, ready.digest, resume=state is not None
+    )
     bar = Progress(end, show=progress)
     balance = Balance(interval=history.interval, step_factor=getattr(solver.problem, "step_factor", None))
     watchers: list[Observer] = [series, history, checkpointer, balance, bar]
@@ -87,8 +91,8 @@ def run(
     with _log_file(directory, append=state is not None):
         manifest = Manifest(
             directory,
-            inputs=digests([*paths, deck]),
-            options=_all_options(scene, model, chosen, until),
+            inputs=digests([*paths, *ready.decks]),
+            options=_all_options(scene, ready.models, chosen, until),
             threads=solver.threads,
             title=(scene.title if scene else "") or model.title,
             units=scene.units if scene else None,
@@ -97,14 +101,18 @@ def run(
         )
         for report in ready.made:
             for line in [*report["notes"], *losses(report, "approximated", "dropped")]:
-                log.info("making %s: %s", deck.name, line)
-        for warning in model.warnings:
+                log.info(
+                    "making %s: %s", Path(report["target"]["file"]).name if "file" in report["target"] else "", line
+                )
+        warnings = list(dict.fromkeys(warning for m in ready.models for warning in m.warnings))
+        for warning in warnings:
             log.warning(warning)
-        model.warnings += [line for report in ready.made for line in losses(report, "dropped")]
-        log.info("%s: %s, end time %g; built for %s", deck.name, _counted(model), end, solver.kernels())
+        warnings += [line for report in ready.made for line in losses(report, "dropped")]
+        names = " and ".join(deck.name for deck in ready.decks)
+        log.info("%s: %s, end time %g; built for %s", names, _counted(count), end, solver.kernels())
         if state is not None:
             log.info("resumed at t = %g, step %d", solver.time, solver.step)
-        steps_before = solver.step
+        steps_before = _steps(solver)
         status = "failed"
         loop = time.perf_counter()
         try:
@@ -132,13 +140,11 @@ def run(
                 "time": solver.time,
                 "wall_seconds": time.perf_counter() - ready.started,
                 "compile_seconds": compile_seconds(),
-                "particles": model.particle_count(),
-                "nodes": len(model.xyz),
-                "elements": sum(model.element_counts().values()),
-                "particle_steps_per_second": model.particle_count() * (solver.step - steps_before) / max(seconds, 1e-9),
+                **count,
+                "particle_steps_per_second": count["particles"] * (_steps(solver) - steps_before) / max(seconds, 1e-9),
                 "energy": solver.energy_report(),
                 "output": str(directory),
-                "warnings": list(model.warnings),
+                "warnings": list(warnings),
             }
             unbalanced = balance.warning(solver)
             if unbalanced is not None:
@@ -151,6 +157,8 @@ def run(
             "done: %d steps to t = %g in %.2f s (%scompiling %.1f s), energy balance error %.2e",
             solver.step, solver.time, seconds, speed, result["compile_seconds"], result["energy"]["balance_error"],
         )  # fmt: skip
+        if hasattr(solver, "seconds"):
+            log.info("budget: %s", _budget(solver, seconds))
         result["pictures"] = _pictures(scene, directory, result["warnings"])
         manifest.update(warnings=result["warnings"], pictures=result["pictures"])
     if not quiet:
@@ -160,11 +168,12 @@ def run(
 
 
 def _observers(
-    model: Model, scene: Scene | None, directory: Path, end: float, decks: Mapping[str, str], *, resume: bool
+    models: Sequence[Model], scene: Scene | None, directory: Path, end: float, decks: Mapping[str, str], *, resume: bool
 ) -> tuple[ResultSeries, History, Checkpointer]:
+    model = models[0]
     control = model.particle_control
-    if control is None:
-        return _step_observers(model, scene, directory, decks, resume=resume)
+    if control is None or len(models) == 2:
+        return _step_observers(models, scene, directory, decks, resume=resume)
     frames = (scene.output.every if scene else None) or control.output_interval or max(end, 1e-300) / FRAMES
     rows = control.history_interval or frames / ROWS
     saves = scene.checkpoint.every if scene and scene.checkpoint else frames
@@ -183,18 +192,24 @@ def _observers(
 
 
 def _step_observers(
-    model: Model, scene: Scene | None, directory: Path, decks: Mapping[str, str], *, resume: bool
+    models: Sequence[Model], scene: Scene | None, directory: Path, decks: Mapping[str, str], *, resume: bool
 ) -> tuple[ResultSeries, History, Checkpointer]:
-    """Of a structure: a row and a frame a step, or the steps that the deck plots; checkpoints some times a run."""
-    fem = model.fem_control
+    """Of a structure, alone or with particles: a row and a frame a step, or the steps that the deck plots; checkpoints some times a run."""
+    fem = models[-1].fem_control
     assert fem is not None
+    names = {i: m.name for i, m in models[0].materials.items()}
+    if len(models) == 2:  # the structure's materials follow the particles'
+        assert models[0].particles is not None
+        last = int(models[0].particles.material.max())
+        names = {i: name for i, name in names.items() if i <= last or i - last not in models[1].materials}
+        names |= {last + i: m.name or models[0].materials.get(last + i, m).name for i, m in models[1].materials.items()}
     every = scene.output.every if scene else None
     steps = sum(count for count, _ in fem.periods) or 1
     saves = scene.checkpoint.every if scene and scene.checkpoint else None
     return (
         ResultSeries(
             directory,
-            {i: m.name for i, m in model.materials.items()},
+            names,
             interval=every,
             format=scene.output.format if scene else "vtp",
             resume=resume,
@@ -215,19 +230,38 @@ def _plotted(fem: FemControl) -> Callable[[int], bool]:
     return lambda step: True
 
 
-def _counted(model: Model) -> str:
-    if model.fem_control is not None:
-        return f"{len(model.xyz)} nodes, {sum(model.element_counts().values())} elements"
-    return f"{model.particle_count()} particles"
+def _counts(models: Sequence[Model]) -> dict[str, int]:
+    return {
+        "particles": sum(m.particle_count() for m in models),
+        "nodes": sum(len(m.xyz) for m in models),
+        "elements": sum(sum(m.element_counts().values()) for m in models),
+    }
+
+
+def _counted(count: Mapping[str, int]) -> str:
+    return ", ".join(f"{number} {name}" for name, number in count.items() if number)
+
+
+def _budget(solver: Any, total: float) -> str:
+    """Where the time of a coupled run went."""
+    own = {**solver.seconds, "output and the rest": total - sum(solver.seconds.values())}
+    steps = {"structure": f" ({solver.step} steps)", "particles": f" ({_steps(solver)} steps)"}
+    return ", ".join(f"{name}{steps.get(name, '')} {spent:.1f} s" for name, spent in own.items())
+
+
+def _steps(solver: Any) -> int:
+    """Steps of the particles, where there are some."""
+    return int(getattr(solver, "particles", solver).step)
 
 
 def _all_options(
-    scene: Scene | None, model: Model, chosen: command_options.Options, until: float | None
+    scene: Scene | None, models: Sequence[Model], chosen: command_options.Options, until: float | None
 ) -> dict[str, Any]:
     from dataclasses import asdict
 
-    said = model.particle_control or model.fem_control
-    control = asdict(said) if said else {}
+    control: dict[str, Any] = {}
+    for said in [c for m in models for c in (m.particle_control, m.fem_control) if c]:
+        control |= asdict(said)
     control.pop("places", None)
     return {
         "scene": scene.model_dump() if scene else None,

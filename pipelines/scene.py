@@ -11,9 +11,10 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, PrivateAttr, ValidationError, field_validator
 from pydantic_core import ErrorDetails
 
+from zrno.pipelines.coupling_method import Coupling
 from zrno.pipelines.fem_method import Fem
 from zrno.pipelines.method import Sph
-from zrno.pipelines.sections import Friction, Positive, Section, wrong
+from zrno.pipelines.sections import Positive, Section, wrong
 from zrno.pipelines.study_scene import Study
 from zrno.pipelines.units import SYSTEMS, Units
 from zrno.pipelines.view import LEAST_PIXELS, MOST_PIXELS, VIEWS
@@ -56,14 +57,6 @@ class Mesh(Section):
     part: Annotated[list[str | int], BeforeValidator(_as_list)] = Field(default_factory=list)
     dialect: Literal["2.07", "2019-08", "2019-10"] | None = None
     numbers: dict[str, float] = Field(default_factory=dict)
-
-
-class Coupling(Section):
-    """How grains and structure meet. surface: the wetted elements, all or a part's name."""
-
-    surface: str = "all"
-    contact: Literal["kernel", "potential", "pinball", "face"] = "kernel"
-    friction: Friction | None = None
 
 
 class Output(Section):

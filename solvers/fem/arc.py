@@ -141,6 +141,9 @@ class PathFollowing:
     def momentum(self, solver: Solver) -> Floats:
         return np.zeros(3)
 
+    def jump(self, change: Floats) -> Floats:
+        return np.zeros_like(change)
+
     def forget(self) -> None:
         """Nothing."""
 

@@ -43,6 +43,7 @@ class Integrator:
         if how.method == "wilson":
             self.beta, self.gamma = 1.0 / 6.0, 0.5
         self.theta = how.theta if how.method == "wilson" else 1.0
+        self._mass_system: linear.System | None = None
         self.last = np.zeros((n, 6))  # loads - stresses - damping at the last state, for the alpha form
 
     def inertia(self, acceleration: Floats) -> Floats:
@@ -64,22 +65,36 @@ class Integrator:
         """Accelerations of the first state. forces: (n, 6) loads less stresses."""
         left = forces - self.damping(self.velocity)
         self.last = left.copy()
+        self.acceleration = self._accelerated(left)
+
+    def jump(self, change: Floats) -> Floats:
+        """Loads (n, 6) change at once: so do the accelerations. Returns the change of the forces of inertia."""
+        self.last = self.last + change
+        acceleration = self._accelerated(change)
+        self.acceleration = self.acceleration + acceleration
+        return self.inertia(acceleration)
+
+    def _accelerated(self, forces: Floats) -> Floats:
+        """M^-1 forces, zero where nothing moves; zero if parts of the structure have no mass: they start at rest."""
         a = self.assembly
         if self._mass_values is None:
-            self.acceleration = np.where(a.free & (self.diagonal > 0.0), left / np.maximum(self.diagonal, 1e-300), 0.0)
-            return
-        if not self._mass_values.any():
-            return
-        s = a.structure
-        system = linear.System(s.starts, s.columns, kind="definite", method=a.problem.solver, threads=a.threads)
-        system.values[:] = self._mass_values
-        try:
-            system.factor()
-        except linear.Singular:  # parts without mass: they start at rest
-            return
-        out = np.zeros(6 * a.n)
-        out[a.where] = system.solve(left.ravel()[a.where])
-        self.acceleration = out.reshape(a.n, 6)
+            out: Floats = np.where(a.free & (self.diagonal > 0.0), forces / np.maximum(self.diagonal, 1e-300), 0.0)
+            return out
+        found = np.zeros(6 * a.n)
+        if self._mass_values.any():
+            try:
+                if self._mass_system is None:
+                    s = a.structure
+                    system = linear.System(
+                        s.starts, s.columns, kind="definite", method=a.problem.solver, threads=a.threads
+                    )
+                    system.values[:] = self._mass_values
+                    system.factor()
+                    self._mass_system = system
+                found[a.where] = self._mass_system.solve(forces.ravel()[a.where])
+            except linear.Singular:
+                pass
+        return found.reshape(a.n, 6)
 
     def of_change(self, change: Floats, dt: float) -> tuple[Floats, Floats]:
         """Velocity and acceleration at the end of a step that moves by `change` (n, 6)."""

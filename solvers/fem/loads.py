@@ -19,6 +19,7 @@ class Loads:
 
     def __init__(self, problem: Problem, groups: Sequence[Group]) -> None:
         self.problem = problem
+        self.contact: Floats | None = None  # (n, 6) forces of what touches the structure, in this step
         self._patterns: dict[tuple[int | None, float], Floats] = {}
         self.followers = tuple(load for load in problem.face_loads if load.follows and load.direction == 0)
         radius = _radii(problem)
@@ -48,7 +49,7 @@ class Loads:
 
     def at(self, time: float, u: Floats) -> Floats:
         """Forces at a time; u: (n, 6) displacement, for the pressure that follows."""
-        total = np.zeros((len(self.problem.x), 6))
+        total = np.zeros((len(self.problem.x), 6)) if self.contact is None else self.contact.copy()
         for (curve, shift), values in self._patterns.items():
             total += self.factor(curve, time + shift) * values
         for face in self.followers:

@@ -47,6 +47,12 @@ class Procedure(Protocol):
     def momentum(self, solver: Solver) -> Floats:
         """Linear momentum (3,)."""
 
+    def jump(self, change: Floats) -> Floats:
+        """Loads change at once by `change` (n, 6): accelerations do too, displacements and velocities do not.
+
+        Returns the change of the forces of inertia (n, 6).
+        """
+
     def forget(self) -> None:
         """What only speeds up the next step: a resumed run does not have it, so one that goes on drops it too."""
 
@@ -68,6 +74,9 @@ class Still:
 
     def momentum(self, solver: Solver) -> Floats:
         return np.zeros(3)
+
+    def jump(self, change: Floats) -> Floats:
+        return np.zeros_like(change)
 
     def forget(self) -> None:
         """Nothing."""
@@ -95,6 +104,15 @@ class Superposition(Still):
             factor = solver.loads.factor(curve, end + shift)
             u += factor * answer
             external += factor * forces
+        contact = solver.loads.contact
+        if contact is not None:
+            a = solver.assembly
+            if not a.system.factored:
+                zero = Shape(np.zeros((solver.n, 6)))
+                a.evaluate(zero, zero, 0.0)
+                a.factor()
+            u += a.expand(a.solve(a.gather(contact)))
+            external += contact
         shape = Shape(u)
         internal, _ = solver.assembly.evaluate(shape, solver.shape, 0.0, stiff=False)
         solver.accept(shape, external, internal)
@@ -211,7 +229,8 @@ class Increments(Still):
         external = solver.loads.at(until, shape.u)
         if mover.theta == 1.0:
             mover.finish(shape.u - solver.shape.u, external - internal, dt)
-        solver.accept(shape, external, internal, mover.inertia(mover.acceleration), mover.damping(mover.velocity))
+        solver.accept(shape, external, internal, mover.inertia(mover.acceleration), mover.damping(mover.velocity),
+                      duration=dt)  # fmt: skip
 
     def _guess(self, change: Floats, dt: float) -> Floats | None:
         """The last step's change once more, where the motion that is prescribed goes on as it went; None elsewhere."""
@@ -234,6 +253,9 @@ class Increments(Still):
 
     def momentum(self, solver: Solver) -> Floats:
         return np.zeros(3) if self.mover is None else self.mover.momentum()
+
+    def jump(self, change: Floats) -> Floats:
+        return np.zeros_like(change) if self.mover is None else self.mover.jump(change)
 
     def forget(self) -> None:
         self._before, self._kept, self._wary = None, 0.0, 0
@@ -288,6 +310,10 @@ class Explicit:
         assert velocity is not None
         out: Floats = (self.stepper.diagonal * velocity)[:, :3].sum(axis=0)
         return out
+
+    def jump(self, change: Floats) -> Floats:
+        """Each step begins with the forces that there are."""
+        return np.where(self.stepper.assembly.free, change, 0.0)
 
     def forget(self) -> None:
         """Nothing."""

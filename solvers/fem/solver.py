@@ -44,6 +44,7 @@ class Solver:
         self.reaction, self.internal_forces = np.zeros((n, 6)), np.zeros((n, 6))
         self.external_forces = self.loads.at(0.0, self.shape.u)
         self.external_work, self.damped = 0.0, 0.0
+        self.support_impulse = np.zeros(3)
         self._damping = np.zeros((n, 6))
         self._ends = np.arange(problem.modes + 1.0) if problem.modes else problem.ends()
         self.dt = float(self._ends[1])
@@ -88,7 +89,7 @@ class Solver:
 
         Raises Diverged with the step, where, and the likely cause; the state is the last one in equilibrium.
         """
-        if max_steps <= 0 or self.time >= until or self.step + 1 >= len(self._ends):
+        if max_steps <= 0 or self.time >= until or self.done:
             return
         end = float(self._ends[self.step + 1])
         dt = end - self.time
@@ -122,9 +123,12 @@ class Solver:
 
     def accept(
         self, shape: Shape, external: Floats, internal: Floats, inertia: Floats | None = None,
-        damping: Floats | None = None,
+        damping: Floats | None = None, duration: float = 0.0,
     ) -> None:  # fmt: skip
-        """Commit a shape with its forces (n, 6); work of loads, supports and damping by the trapezoidal rule."""
+        """Commit a shape with its forces (n, 6); work of loads, supports and damping by the trapezoidal rule.
+
+        duration: of what led to it, of a structure with inertia: the impulse of its supports.
+        """
         moved = shape.u - self.shape.u
         inner = internal if inertia is None else internal + inertia
         if damping is not None:
@@ -134,9 +138,38 @@ class Solver:
         reaction = np.where(self.assembly.free, 0.0, inner - external)
         forces, before = external + reaction, self.external_forces + self.reaction
         self.external_work += 0.5 * float(((forces + before) * moved).sum())
+        self.support_impulse = self.support_impulse + 0.5 * duration * (reaction + self.reaction)[:, :3].sum(axis=0)
         self.assembly.commit()
         self.shape, self.reaction = shape, reaction
         self.internal_forces, self.external_forces = internal, external
+
+    @property
+    def moving(self) -> bool:
+        """Whether it has inertia."""
+        return self.procedure.velocity(self) is not None
+
+    @property
+    def period(self) -> float:
+        """Length of the next step."""
+        return float(self._ends[self.step + 1]) - self.time
+
+    @property
+    def done(self) -> bool:
+        """Whether the last of the problem's steps is taken."""
+        return self.step + 1 >= len(self._ends)
+
+    def press(self, forces: Floats, *, at_once: bool = True) -> None:
+        """Forces (n, 6) of what touches the structure, from now on; they replace the last ones.
+
+        at_once: they act in the whole of the next step; otherwise, and always in statics, they grow in it.
+        """
+        before = self.loads.contact
+        self.loads.contact = forces
+        if self.moving and at_once:
+            change = forces if before is None else forces - before
+            self.external_forces = self.external_forces + change
+            inertia = self.procedure.jump(change)
+            self.reaction = self.reaction + np.where(self.assembly.free, 0.0, inertia - change)
 
     # what it shows
 
@@ -170,16 +203,22 @@ class Solver:
         self.assembly.system.factored = False
         for group in self.assembly.groups:
             group.forget()
+        return self.snapshot()
+
+    def snapshot(self) -> dict[str, Any]:
+        """The state, to be restored in this process: what speeds up the next step stays."""
         data: dict[str, Any] = {name: getattr(self, name) for name in _KEPT}
         data |= {"u": self.shape.u, "external_work": self.external_work, "damped": self.damped,
-                 "damping": self._damping, "time": self.time, "step": self.step, "dt": self.dt,
+                 "damping": self._damping, "support_impulse": self.support_impulse, "time": self.time, "step": self.step, "dt": self.dt,
                  "start_energy": self.start_energy, "iterations": self.iterations}  # fmt: skip
+        if self.loads.contact is not None:
+            data["contact"] = self.loads.contact
         if self.shape.turn is not None:
             data["turn"] = self.shape.turn
         data |= {f"procedure_{name}": values for name, values in self.procedure.state().items()}
         for k, group in enumerate(self.assembly.groups):
             data |= {f"group{k}_{name}": values for name, values in group.state().items()}
-        return data
+        return {name: values.copy() if isinstance(values, np.ndarray) else values for name, values in data.items()}
 
     def restore(self, data: dict[str, Any]) -> None:
         """Go on from a checkpoint of the same problem. ValueError when it is of another one."""
@@ -189,6 +228,8 @@ class Solver:
         for name in _KEPT:
             setattr(self, name, np.array(data[name]))
         self._damping = np.array(data["damping"])
+        self.support_impulse = np.array(data["support_impulse"])
+        self.loads.contact = np.array(data["contact"]) if "contact" in data else None
         self.external_work, self.damped = float(data["external_work"]), float(data["damped"])
         self.time, self.step, self.dt = float(data["time"]), int(data["step"]), float(data["dt"])
         self.start_energy, self.iterations = float(data["start_energy"]), int(data["iterations"])

@@ -61,6 +61,10 @@ def family(law: Law) -> str:
 
 def cohesive(law: Law) -> bool:
     """Whether grain of a soil's law holds together by itself."""
+    if isinstance(law, KinematicCap):
+        return cohesive(law.cap)
+    if isinstance(law, Cap):
+        return law.k > law.gamma
     return (isinstance(law, DruckerPrager) and law.k > 0.0) or (isinstance(law, MohrCoulomb) and law.cohesive > 0.0)
 
 

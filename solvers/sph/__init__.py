@@ -1,7 +1,8 @@
 """Smoothed particle hydrodynamics for solids."""
 
+from . import measures
 from .ghosts import Plane
 from .problem import Body, Cures, Problem
 from .solver import Solver
 
-__all__ = ["Body", "Cures", "Plane", "Problem", "Solver"]
+__all__ = ["Body", "Cures", "Plane", "Problem", "Solver", "measures"]

@@ -65,7 +65,7 @@ def bear(i0, i1, z, shape, correction, dt, arrays, numbers):
             stress[c, i] -= head * inverse
         work = 0.5 * dt * (work + _power(i, z, arrays)) / numbers.wall[m]
         arrays.energy[i] += work
-        arrays.dissipated[i] += work
+        arrays.dissipated[i] = arrays.energy[i]
         arrays.density[i] = numbers.wall[m]
         arrays.volume[i] = arrays.mass[i] / arrays.density[i]
         _to_force(i, z, correction, arrays, numbers)

@@ -91,10 +91,7 @@ def contact_of(problem: Problem, shape: Shape) -> Contact:
 
 def _rigid(problem: Problem) -> Any:
     """(bodies,) whether a body has no particle that may move."""
-    if problem.fixed is None:
-        return np.zeros(len(problem.bodies), bool)
-    free = ~np.all(problem.fixed[:, : problem.dimension], axis=1)
-    return np.bincount(problem.body, weights=free, minlength=len(problem.bodies)) == 0
+    return np.bincount(problem.body, weights=~problem.held, minlength=len(problem.bodies)) == 0
 
 
 def _friction(problem: Problem, modulus: Floats, impedance: Floats) -> Any:

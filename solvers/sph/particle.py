@@ -10,6 +10,8 @@ from ..materials.law import JIT_OPTIONS, bulk_modulus, rotate_state, stress_upda
 from ..materials.rotation import first_order_spin, spin_rotation
 from .nominal import LENGTH
 
+DRIVEN = 8  # a bit of `fixed`: the velocity is given from outside
+
 
 @kernel
 def constitutive(
@@ -241,10 +243,15 @@ def half_work(i0, i1, z, cx, bx, body_work, dt, arrays, numbers):
 
 @kernel
 def kick(i0, i1, z, cx, bx, body_work, duration, dt, arrays, numbers):
-    """v += a duration; directions in the mask `fixed` (bits x y z) do not move. dt: the step that begins."""
+    """v += a duration; directions in the mask `fixed` (bits x y z) do not move, nor change driven velocities.
+
+    dt: the step that begins.
+    """
     u, v = arrays.u, arrays.v
     for i in range(i0, i1):
         fixed = arrays.fixed[i]
+        if fixed & DRIVEN:
+            continue
         if fixed & 1:
             arrays.ax[i] = 0.0
             u[i] = 0.0
@@ -290,9 +297,11 @@ def drift(i0, i1, z, smoothed, h_start, h_list, mirrors, half_support, dt, array
             if z is not None:
                 wi = smoothed[2, i]
             fixed = arrays.fixed[i]
-            ui = 0.0 if fixed & 1 else ui
-            vi = 0.0 if fixed & 2 else vi
-            wi = 0.0 if fixed & 4 else wi
+            given = fixed & DRIVEN  # it is where the structure is
+            ui = (u[i] if given else 0.0) if fixed & 1 else ui
+            vi = (v[i] if given else 0.0) if fixed & 2 else vi
+            if z is not None:
+                wi = (arrays.w[i] if given else 0.0) if fixed & 4 else wi
         x[i] += ui * dt
         y[i] += vi * dt
         if z is not None:
@@ -352,7 +361,8 @@ def critical_step(i0, i1, z, wave, numbers, arrays):
     least = np.inf
     for i in range(i0, i1):
         held = (arrays.fixed[i] & all_fixed) == all_fixed
-        if held and (not numbers.held_limits or numbers.wall[arrays.material[i]] > 0.0):
+        limits = numbers.held_limits and (numbers.original or not arrays.fixed[i] & DRIVEN)
+        if held and (not limits or numbers.wall[arrays.material[i]] > 0.0):
             continue
         c = numbers.wave[arrays.material[i]]
         if wave is not None and c > 0.0:

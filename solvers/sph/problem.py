@@ -83,7 +83,8 @@ class Problem:
     between bodies act along the normals of the contact: particles then slide over a coarse wall as over a smooth one
     (their centres turn nothing exactly). local_steps: stiff bodies take several steps within one of the others
     (`local`); None: where that goes and is worth while. axisymmetric: a plane problem whose x is the distance from the
-    axis y; masses are those of whole rings (`rings`).
+    axis y; masses are those of whole rings (`rings`). driven: (n,) particles whose velocity is given from outside, as
+    nodes of a structure (`driving`).
     """
 
     dimension: int
@@ -123,6 +124,7 @@ class Problem:
     contact_by_normals: bool = False
     local_steps: bool | None = False
     axisymmetric: bool = False
+    driven: NDArray[np.bool_] | None = None
 
     def __post_init__(self) -> None:
         n = len(self.x)
@@ -159,6 +161,8 @@ class Problem:
             raise ValueError(f"contact damping {self.contact_damping!r} must lie between 0 and 1")
         if self.axisymmetric:
             self._check_revolution()
+        if self.driven is not None and not self.apart and self.cures.artificial_stress > 0.0:
+            raise ValueError("artificial stress between grain and structure needs contact that keeps them apart")
         if self.body.min() < 0 or self.body.max() >= len(self.bodies):
             raise ValueError("a particle's body is not among the bodies")
 
@@ -181,6 +185,7 @@ class Problem:
                 p.axis == 0 and p.side < 0 and p != AXIS for p in self.planes
             ),
             "a periodic plane across x": any(p.axis == 0 and p.kind == PERIODIC for p in self.planes),
+            "particles that a structure drives": self.driven is not None,
             "a rigid plane that is not normal to the axis": any(w.normal[0] != 0.0 for w in self.walls),
             "a body force across the axis": self.body_force[0] != 0.0
             or (self.body_curve is not None and bool(np.any(self.body_curve[1][:, 0]))),
@@ -189,6 +194,12 @@ class Problem:
         for what, asked in refused.items():
             if asked:
                 raise ValueError(f"an axisymmetric run does not go with {what}")
+
+    @property
+    def held(self) -> NDArray[np.bool_]:
+        """(n,) particles that no force moves: fixed in all directions, or driven."""
+        held = np.zeros(len(self.x), bool) if self.fixed is None else self.fixed[:, : self.dimension].all(axis=1)
+        return held if self.driven is None else held | self.driven
 
     @property
     def sections(self) -> Floats:

@@ -7,6 +7,7 @@ import numpy as np
 from ..materials import constant_wave, sound_speed, state_rows
 from ..neighbours import FAR
 from .contact import Contact
+from .particle import DRIVEN
 from .problem import STEP_OPTIONS, Cures, Problem
 from .smoothing import Shape, normaliser, value_at
 from .state import Numbers, Rows, State
@@ -50,6 +51,7 @@ def rows_of(p: Problem, contact: Contact, cures: Cures, *, local: bool) -> Rows:
         lagrangian=any(b.lagrangian for b in p.bodies),
         local=local,
         hoop=p.axisymmetric,
+        driven=p.driven is not None,
     )
 
 
@@ -93,7 +95,7 @@ def _held_limits(p: Problem) -> bool:
     """Whether held particles limit the step: where their stress is felt by softer bodies, or nothing else is there."""
     if p.original or p.fixed is None:
         return True
-    return bool(np.all(p.fixed[:, : p.dimension])) or (len(p.bodies) > 1 and not p.apart)
+    return bool(np.all(p.held)) or (len(p.bodies) > 1 and not p.apart)
 
 
 def _first_energy(p: Problem, body: int) -> float:
@@ -118,6 +120,8 @@ def fill(s: State, p: Problem, numbers: Numbers, has: Rows, shape: Shape) -> Non
     s.material[:n] = p.body
     if p.fixed is not None:
         s.fixed[:n] = p.fixed @ np.array([1, 2, 4])
+    if p.driven is not None:
+        s.fixed[:n][p.driven] = DRIVEN | 7
     if has.changing_h:
         s.rows("h_start")[0, :n] = p.h * p.density ** (1.0 / p.dimension)
     if has.wave:
@@ -146,6 +150,7 @@ def described(p: Problem, contact: Contact, cures: Cures, has: Rows, threads: in
         f"{len(p.planes)} boundary plane(s)": bool(p.planes),
         "base acceleration by curve": has.body_work,
         "as the original program": p.original,
+        f"{0 if p.driven is None else int(p.driven.sum())} particles driven by a structure": p.driven is not None,
     }
     return (
         f"{'axisymmetric' if p.axisymmetric else f'{p.dimension}D'}, {p.kernel} kernel, "

@@ -21,6 +21,8 @@ from ..neighbours import Cells, NeighbourList
 from ..threads import available, run
 from . import across, blame, ghosts, local, measures, probes, reference, setup, step
 from .contact import contact_of
+from .driving import Driven
+from .particle import DRIVEN
 from .problem import Cures, Problem
 from .rings import TURN
 from .smoothing import shape_of
@@ -41,6 +43,7 @@ class Solver:
         self.problem = problem
         self.end_time = problem.end_time
         self.builds = 0
+        self._given = 0.0  # work of what drives particles, up to where their impulse was taken
         n = self.n = len(problem.x)
         self.live = n  # particles that have not left the problem; the others stand behind them
         self.threads = 1 if n < SMALL else max(1, min(threads or available(), available()))
@@ -80,7 +83,7 @@ class Solver:
             raise self._collapsed()
         if problem.original:
             self._start_as_original(first)
-        self._start_energy = self._energies()
+        self._start_energy = self.energies()
 
     def _start_as_original(self, first: float) -> None:
         """The original program begins with a whole step of strain, at positions half a step before the start."""
@@ -162,7 +165,7 @@ class Solver:
             else:
                 break
         if self.step // CHECKED > started // CHECKED:
-            made = blame.energy_made(self._state, self.step, self._start_energy, self._energies())
+            made = blame.energy_made(self._state, self.step, self._start_energy, self.energies())
             if made is not None:
                 raise made
 
@@ -185,8 +188,8 @@ class Solver:
             None if images is None else images.sign, None if images is None else images.shift, self._mirrors,
             self._contact.friction, self._contact.damping, self._contact.normals, self._contact.by_normals,
             self._contact.walls, a.wall_slip if has.wall_slip else None, a.contact_heat,
-            True if self._plain else None, a.hoop, self._rows_apart, self._reference, a, self._numbers, self._laws,
-            self._progress, float(until), float(pause), steps, self._spare**2,
+            True if self._plain else None, a.hoop, self._rows_apart, self._reference, True if has.driven else None, a,
+            self._numbers, self._laws, self._progress, float(until), float(pause), steps, self._spare**2,
         )  # fmt: skip
         return int(found[0])
 
@@ -296,17 +299,48 @@ class Solver:
         if self._stiff is not None:
             u, a, c, held = (s.rows(name)[:, self._slow : n] for name in ("u", "a", "c", "held"))
             velocity[:, self._slow :] = local.velocity(u, a, c, held, float(self._progress[step.LAST]), self._inner)
+        driven = s.fixed[:n] & DRIVEN > 0
         for k in range(s.d):
             velocity[k, (s.fixed[:n] >> k) & 1 == 1] = 0.0
+            velocity[k, driven] = s.rows("u")[k, :n][driven]
         return velocity
+
+    # what a structure does with the particles that it drives
+
+    @property
+    def driven(self) -> Driven:
+        """The driven particles: their rows are read and set between two steps."""
+        return Driven(self._state, self.n)
+
+    def drive(self, velocity: Floats) -> None:
+        """From here on driven particles move at these velocities (m, 3)."""
+        self.take_impulse()
+        self.driven.write("u", velocity)
+
+    def take_impulse(self) -> Floats:
+        """(m, 3) impulse on the driven particles since it was last taken."""
+        driven = self.driven
+        impulse = driven.read("impulse")
+        self._given -= float(np.sum(impulse * driven.read("u")))
+        driven.write("impulse", 0.0)
+        return impulse
+
+    @property
+    def given_work(self) -> float:
+        """Work of what drives particles."""
+        if not self._has.driven:
+            return 0.0
+        driven = self.driven
+        return self._given - float(np.sum(driven.read("impulse") * driven.read("u")))
 
     def frame(self) -> Frame:
         """The state now, in the order of the deck."""
         arrays = measures.particles(self.problem, self._state, self._velocity()[:, : self.live], self.live)
         return Frame(time=self.time, step=self.step, particles=arrays)
 
-    def _energies(self) -> dict[str, float]:
-        return measures.energies(self.problem, self._state, self._velocity())
+    def energies(self) -> dict[str, float]:
+        """Energies now, see `measures.energies`."""
+        return measures.energies(self.problem, self._state, self._velocity(), self.given_work)
 
     def _contact_force(self) -> Floats:
         """Force [3] of all other bodies on the first one."""
@@ -334,10 +368,11 @@ class Solver:
         constant.
         """
         s, n = self._state, self.n
-        energies = self._energies()
+        energies = self.energies()
         stored = {name: energies.pop(name) for name in STORED}
         momentum = np.zeros(3)
-        momentum[: s.d] = (self._velocity() * s.rows("mass")[0, :n]).sum(axis=1)
+        moving = s.fixed[:n] & DRIVEN == 0
+        momentum[: s.d] = (self._velocity() * s.rows("mass")[0, :n])[:, moving].sum(axis=1)
         if self.problem.axisymmetric:
             momentum[0] = 0.0  # of a ring
         force = self._contact_force()
@@ -348,7 +383,7 @@ class Solver:
             **energies,
             **dict(zip(("momentum_x", "momentum_y", "momentum_z"), momentum.tolist(), strict=True)),
             **dict(zip(("contact_force_x", "contact_force_y", "contact_force_z"), force.tolist(), strict=True)),
-            "active": float(self.live),
+            "active": float(self.live - self.n + np.count_nonzero(moving)),
             **stored,
             "max_plastic_strain": float(plastic.max()),
             "step": float(self.step),
@@ -357,7 +392,7 @@ class Solver:
 
     def energy_report(self) -> dict[str, float]:
         """Energies at the start and now, and how far their balance is out, see `measures.report`."""
-        return measures.report(self._start_energy, self._energies())
+        return measures.report(self._start_energy, self.energies())
 
     # to be continued
 
@@ -370,6 +405,7 @@ class Solver:
         return data | {
             "progress": self._progress.copy(),
             "inner": self._inner.copy(),
+            "given": self._given,
             "start_energy": np.array(list(self._start_energy.values())),
             "time": self.time,
             "step": self.step,
@@ -387,7 +423,8 @@ class Solver:
             getattr(s, name)[:n] = data[name]
         self.live = int(data["live"])
         self._progress[:] = data["progress"]
-        self._inner[:] = data.get("inner", 0.0)  # of before there were local steps
+        self._inner[:] = data["inner"]
+        self._given = float(data["given"])
         if self.problem.body_curve is not None:
             step.body_force_at(self._progress[step.TIME], self._numbers)
         self._start_energy = dict(zip(self._start_energy, np.asarray(data["start_energy"]).tolist(), strict=True))

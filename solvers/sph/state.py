@@ -32,7 +32,8 @@ class Arrays(NamedTuple):
     slid, the load of friction (d + 2, m); wall_slip: the same for each wall; colour: normal to other bodies, mobilised:
     traction by normal force, (d, m) each (see `slip`). Of total-Lagrangian bodies: deformation (d*d): F - I;
     hourglass: rows of `nominal`; nominal (d*d): V P M^-1 - kappa (F - I)/2. held (2 d, m): of
-    stiff bodies with local steps, see `local`. hoop: r u, see `rings`.
+    stiff bodies with local steps, see `local`. hoop: r u, see `rings`. impulse, thrust (d, m): of what is driven, see
+    `driving`.
     """
 
     x: Any
@@ -102,6 +103,8 @@ class Arrays(NamedTuple):
     hourglass: Any
     nominal: Any
     held: Any
+    impulse: Any
+    thrust: Any
 
 
 class Numbers(NamedTuple):
@@ -162,7 +165,7 @@ class Rows:
     state: of the laws; the others say whether: contact, correction, artificial stress, pair viscosity (heat), density
     and stress diffusion, xsph, a changing h, a changing body force, a changing wave speed, heat of contact, slip
     between bodies, normals; wall_slip: walls with friction; total-Lagrangian bodies; local steps; hoop stress of
-    a body of revolution.
+    a body of revolution; driven particles.
     """
 
     state: int = 0
@@ -183,6 +186,7 @@ class Rows:
     lagrangian: bool = False
     local: bool = False
     hoop: bool = False
+    driven: bool = False
 
 
 class State:
@@ -206,13 +210,13 @@ class State:
             "wave": int(has.wave), "b": d if has.artificial else 0, "contact_heat": int(has.contact_heat),
             "slip": (d + 2) * has.slip, "wall_slip": (d + 2) * has.wall_slip,
             "deformation": d * d if has.lagrangian else 0, "hourglass": HOURGLASS if has.lagrangian else 0,
-            "held": 2 * d * has.local,
+            "held": 2 * d * has.local, "impulse": d * has.driven,
             "state": has.state,
             "gradient": d * d, "s": (d * d if has.correction or has.hoop else 6 if solid else 3), "nearest": 1,
             "c": d if has.contact else 0, "correction": (6 if solid else 3) if has.correction else 0,
             "density_rate": int(has.density_rate), "stress_rate": six if has.stress_rate else 0,
             "smoothed": d if has.xsph else 0, "colour": d * has.normals, "mobilised": d * has.slip,
-            "nominal": d * d if has.lagrangian else 0, "hoop": int(has.hoop),
+            "nominal": d * d if has.lagrangian else 0, "hoop": int(has.hoop), "thrust": d * has.driven,
         }  # fmt: skip
         self.slices: dict[str, slice] = {}
         at = 0
@@ -336,4 +340,6 @@ class State:
             hourglass=self.rows("hourglass"),
             nominal=self.rows("nominal"),
             held=self.rows("held"),
+            impulse=self.rows("impulse"),
+            thrust=self.rows("thrust"),
         )

@@ -1,0 +1,29 @@
+"""The scene's `coupling` section: how grain and structure meet; `--set coupling.KEY=VALUE` for a bare pair of decks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from zrno.pipelines.sections import Friction, Positive, Section, section_of_options
+
+
+class Coupling(Section):
+    """How grain and structure meet, where it is not as the particle deck says.
+
+    surface: the wetted elements: all, or numbers of groups of elements; contact: None as the deck says; tolerance: of
+    the force in a period, relative: each period is iterated to it (strong coupling), once without; most: iterations.
+    """
+
+    surface: str | int | list[str | int] = "all"
+    contact: Literal["kernel", "potential", "pinball", "face"] | None = None
+    friction: Friction | None = None
+    tolerance: Positive | None = None
+    most: Annotated[int, Field(ge=2, le=200)] = 30
+
+
+def of_options(options: Mapping[str, Any]) -> Coupling:
+    """The section that the keys `coupling.*` of `--set` make. Raises InputError."""
+    return section_of_options(Coupling, "coupling", options)

@@ -1,0 +1,269 @@
+"""Finite elements lead, particles follow: periods of one structural step, motion there and forces back.
+
+In a period T the structure takes a step under the forces of contact, constant in it. Its wetted nodes move from where
+they were to where they are at constant velocity; the particles take as many steps of their own as they need,
+and the impulse of their contact over T is the force of the next period, or, iterated, of the same one. Impulses are
+handed over whole: what has been received and not yet handed on is `pending`.
+
+Sources: [T] ch. 5; strong coupling with Aitken's relaxation (Kuettler & Wall 2008).
+"""
+
+from __future__ import annotations
+
+import logging
+import math
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import fem, sph
+from ..frame import Cells, Frame
+
+Floats = NDArray[np.float64]
+log = logging.getLogger("zrno")
+SLICE = 1_000_000  # particle steps at a time: all that a period takes
+SMALL = 1e-3  # of the largest force so far: changes of less are not iterated on
+LEAST_RELAXATION, FIRST_RELAXATION = 0.05, 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class Exchange:
+    """What is exchanged, and how.
+
+    nodes: (m,) indices of the wetted nodes, in the order of the driven particles; tolerance: of the force in a period,
+    relative, where it is iterated (strong coupling), 0 for once (weak); most: iterations; original: hand back what the
+    original programs do, accelerations at the end of the period, none with kernel contact. offset: added to the
+    numbers of the structure's materials, which follow the particles'.
+    """
+
+    nodes: NDArray[np.int64]
+    tolerance: float = 0.0
+    most: int = 30
+    original: bool = False
+    offset: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class CoupledProblem:
+    """What a run needs to know of it. end_time: the structure's; step_factor: of the particles."""
+
+    end_time: float
+    dimension: int
+    step_factor: float
+
+
+class Coupled:
+    """A structure and particles. `advance` takes one period; between calls both are at `time`."""
+
+    def __init__(self, structure: fem.Solver, particles: sph.Solver, exchange: Exchange) -> None:
+        self.structure, self.particles, self.exchange = structure, particles, exchange
+        p = particles.problem
+        self.problem = CoupledProblem(structure.problem.end_time, p.dimension, p.step_factor)
+        self.threads = particles.threads
+        m = len(exchange.nodes)
+        self.force = np.zeros((m, 3))  # on the wetted nodes in the last period
+        self.pending = np.zeros((m, 3))  # impulse received and not yet handed on
+        self.work = 0.0  # of the contact on the structure
+        self.iterations = 0
+        self._largest = 0.0  # force of a period so far
+        self._relaxation = FIRST_RELAXATION
+        self._told = False
+        self.seconds = {"structure": 0.0, "particles": 0.0}
+        self._start_energy = self._energies()
+
+    @property
+    def time(self) -> float:
+        """Time of the structure's last step."""
+        return self.structure.time
+
+    @property
+    def step(self) -> int:
+        """Periods done."""
+        return self.structure.step
+
+    @property
+    def dt(self) -> float:
+        """Length of the last period."""
+        return self.structure.dt
+
+    def kernels(self) -> str:
+        """What a run is built of, for the log."""
+        e = self.exchange
+        how = f"iterated to {e.tolerance:g}" if e.tolerance else "once a period"
+        how = "as the original programs" if e.original else how
+        return (
+            f"structure: {self.structure.kernels()}; particles: {self.particles.kernels()}; "
+            f"{len(e.nodes)} wetted nodes, forces handed over {how}"
+        )
+
+    # a period
+
+    def advance(self, until: float, max_steps: int, pause: float = math.inf) -> None:
+        """Take one of the structure's steps, whole. Raises Diverged of either solver."""
+        s = self.structure
+        if max_steps <= 0 or s.time >= until or s.done:
+            return
+        if self.exchange.original:
+            self._as_original()
+            return
+        period, carried = s.period, self.pending
+        if self.exchange.tolerance:
+            force, work, impulse = self._iterated(carried, period)
+        else:
+            force = carried / period
+            work, impulse = self._exchange(force)
+        self.work += work
+        self.pending = carried + impulse - force * period
+        self.force = force
+        self._largest = max(self._largest, float(np.linalg.norm(force)))
+
+    def _iterated(self, carried: Floats, period: float) -> tuple[Floats, float, Floats]:
+        """The period with the force that its own contact makes: (force, work, impulse)."""
+        held = self.structure.snapshot(), self.particles.checkpoint()
+        force, last = self.force, None
+        relaxation = max(abs(self._relaxation), LEAST_RELAXATION)
+        for left in reversed(range(self.exchange.most)):
+            work, impulse = self._exchange(force)
+            self.iterations += 1
+            missing = (carried + impulse) / period - force
+            size = float(np.linalg.norm(missing))
+            scale = max(float(np.linalg.norm(force + missing)), SMALL * self._largest)
+            if size <= self.exchange.tolerance * scale:
+                break
+            if not left:
+                self._tell(size / scale)
+                break
+            if last is not None and (change := missing - last).any():
+                relaxation *= -float(np.sum(last * change)) / float(np.sum(change * change))
+                relaxation = math.copysign(min(max(abs(relaxation), LEAST_RELAXATION), 1.0), relaxation)
+            last = missing
+            force = force + relaxation * missing
+            self.structure.restore(held[0])
+            self.particles.restore(held[1])
+        self._relaxation = relaxation
+        return force, work, impulse
+
+    def _tell(self, missing: float) -> None:
+        """A period that did not settle is told, the first time."""
+        if not self._told:
+            log.warning(
+                "coupling: the force of the period to t = %g is %.2g off after %d iterations; what is missing is "
+                "handed over in the next one", self.time, missing, self.exchange.most,
+            )  # fmt: skip
+        self._told = True
+
+    def _exchange(self, force: Floats) -> tuple[float, Floats]:
+        """One structural step under these forces (m, 3), the particles after it; the work done and their impulse."""
+        s, p, nodes = self.structure, self.particles, self.exchange.nodes
+        u = s.shape.u[nodes, :3]
+        start, before = s.time, np.zeros_like(force) if s.loads.contact is None else s.loads.contact[nodes, :3]
+        self._press(force)
+        self._lead()
+        moved = s.shape.u[nodes, :3] - u
+        mean = force if s.moving else 0.5 * (force + before)
+        self._follow(s.time - start)
+        return float(np.sum(mean * moved)), p.take_impulse()
+
+    def _press(self, force: Floats, *, at_once: bool = True) -> None:
+        loads = np.zeros((self.structure.n, 6))
+        loads[self.exchange.nodes, :3] = force
+        self.structure.press(loads, at_once=at_once)
+
+    def _lead(self) -> None:
+        """The structure takes its step."""
+        began = time.perf_counter()
+        self.structure.advance(math.inf, 1)
+        self.seconds["structure"] += time.perf_counter() - began
+
+    def _follow(self, period: float) -> None:
+        """The particles go where the structure has gone, and to its time."""
+        s, p = self.structure, self.particles
+        now = s.problem.x[self.exchange.nodes] + s.shape.u[self.exchange.nodes, :3]
+        left = s.time - p.time
+        began = time.perf_counter()
+        p.drive((now - p.driven.read("x")) / (left if left > 0.0 else period))
+        while p.time < s.time:
+            p.advance(s.time, SLICE)
+        self.seconds["particles"] += time.perf_counter() - began
+
+    def _as_original(self) -> None:
+        s, p = self.structure, self.particles
+        start = s.time
+        self._press(self.force, at_once=False)
+        self._lead()
+        self._follow(s.time - start)
+        p.take_impulse()
+        self.force = p.driven.read("c") if p.problem.apart else np.zeros_like(self.force)
+
+    # what it shows
+
+    def frame(self) -> Frame:
+        """Particles, nodes and elements; the structure's materials are numbered after the particles'."""
+        grain, steel = self.particles.frame(), self.structure.frame()
+        cells = [
+            Cells(c.kind, c.nodes, {**c.data, "material": c.data["material"] + self.exchange.offset})
+            for c in steel.cells
+        ]
+        return Frame(steel.time, steel.step, grain.particles, steel.nodes, cells)
+
+    def _interface_energy(self) -> float:
+        """What the interface has made: work on the structure less what the particles have done."""
+        return self.work + self.particles.given_work
+
+    def _energies(self) -> dict[str, float]:
+        grain, steel = self.particles.energies(), self.structure.energies()
+        both = {name: grain.get(name, 0.0) + steel.get(name, 0.0) for name in {**grain, **steel}}
+        both["external_work"] -= self._interface_energy()
+        return both
+
+    def history(self) -> dict[str, float]:
+        """One row of history.csv: sums over both; the mean force on the structure in the period; the interface."""
+        row, steel = self.particles.history(), self.structure.history()
+        for name in ("kinetic", "internal", "dissipated", "momentum_x", "momentum_y", "momentum_z"):
+            row[name] += steel[name]
+        row["external_work"] += steel["external_work"] - self._interface_energy()
+        row["particle_step"] = row.pop("step")
+        row["particle_dt"], row["dt"], row["time"] = row["dt"], self.dt, self.time
+        force, pending = self.force.sum(axis=0), self.pending.sum(axis=0)
+        for k, axis in enumerate("xyz"):
+            row[f"structure_force_{axis}"] = float(force[k])
+            row[f"pending_impulse_{axis}"] = float(pending[k])
+            row[f"reaction_{axis}"] = steel[f"reaction_{axis}"]
+        row["interface_energy"] = self._interface_energy()
+        row["max_displacement"] = steel["max_displacement"]
+        row["iterations"] = float(self.iterations)
+        row["step"] = float(self.step)
+        return row
+
+    def energy_report(self) -> dict[str, float]:
+        """Energies at the start and now; balance_error has in it what the interface made."""
+        return sph.measures.report(self._start_energy, self._energies())
+
+    # to be continued
+
+    def checkpoint(self) -> dict[str, Any]:
+        """Everything that another process needs to go on."""
+        data: dict[str, Any] = {f"structure_{k}": v for k, v in self.structure.checkpoint().items()}
+        data |= {f"particles_{k}": v for k, v in self.particles.checkpoint().items()}
+        start = self._start_energy
+        return data | {
+            "force": self.force.copy(), "pending": self.pending.copy(), "work": self.work,
+            "iterations": self.iterations, "largest": self._largest, "relaxation": self._relaxation,
+            "start_energy": np.array([start[name] for name in sorted(start)]), "time": self.time, "step": self.step,
+        }  # fmt: skip
+
+    def restore(self, data: dict[str, Any]) -> None:
+        """Go on from a checkpoint of the same problem. ValueError when it is of another one."""
+        for solver, prefix in ((self.structure, "structure_"), (self.particles, "particles_")):
+            own = {k.removeprefix(prefix): v for k, v in data.items() if k.startswith(prefix)}
+            if not own:
+                raise ValueError("the checkpoint does not fit this run: it is not of a structure with particles")
+            solver.restore(own)
+        self.force, self.pending = np.array(data["force"]), np.array(data["pending"])
+        self.work, self.iterations = float(data["work"]), int(data["iterations"])
+        self._largest, self._relaxation = float(data["largest"]), float(data["relaxation"])
+        names = sorted(self._start_energy)
+        self._start_energy = dict(zip(names, np.asarray(data["start_energy"]).tolist(), strict=True))
