@@ -11,6 +11,7 @@ import numpy as np
 from ..contact import pinball, potential
 from ..contact.friction import DASHPOT, STICK, Coulomb, Drag
 from ..materials import sound_speed
+from .facing import Surface
 from .problem import Problem
 from .slip import CoulombPairs, DragPairs
 from .smoothing import Shape
@@ -33,6 +34,7 @@ class Contact:
     rigid: Any
     normals: bool | None
     by_normals: bool | None
+    surface: Surface | None
 
     def name(self, bodies: int) -> str:
         """What it is, for the log."""
@@ -41,17 +43,24 @@ class Contact:
         rubbed = {None: "", DragPairs: ", fluid friction", CoulombPairs: ", friction"}
         walls = 0 if self.walls is None else len(self.walls.static)
         said = law.lower() + damped + rubbed[None if self.friction is None else type(self.friction)]
+        if self.surface is not None:
+            said += f", {len(self.surface.facets.corners)} facets" + (" with friction" if self.rubs else "")
         return said + (f", {walls} wall(s)" + (" with friction" if self.wall_slip else "") if walls else "")
 
     @property
     def heats(self) -> bool:
         """Whether contact takes energy that is counted."""
-        return self.friction is not None or self.damping is not None or self.wall_slip > 0
+        return self.friction is not None or self.damping is not None or self.wall_slip > 0 or self.rubs
 
     @property
     def wall_slip(self) -> int:
         """Walls whose slip is remembered: all, or none where none has friction."""
         return len(self.walls.static) if self.walls is not None and np.any(self.walls.static > 0.0) else 0
+
+    @property
+    def rubs(self) -> bool:
+        """Whether there are facets with friction."""
+        return self.surface is not None and self.surface.facets.friction is not None
 
     def pairs(self, radius: float, h: Floats | None, support: float) -> tuple[float, Floats | None]:
         """Search radius and lengths of the list of other bodies, from those of the smoothing kernel.
@@ -86,6 +95,9 @@ def contact_of(problem: Problem, shape: Shape) -> Contact:
         rigid=rigid,
         normals=True if problem.contact_by_normals or friction is not None else None,
         by_normals=True if problem.contact_by_normals else None,
+        surface=None
+        if problem.facets is None
+        else Surface(problem.facets, problem.dimension, wave**2, _radius(problem)),
     )
 
 
@@ -118,17 +130,21 @@ def _walls(problem: Problem, wave: Floats) -> Walls:
     normals = np.array([w.normal for w in problem.walls], dtype=float)
     normals /= np.linalg.norm(normals, axis=1)[:, None]
     none = Coulomb(0.0, 0.0)
-    spacing = problem.sections ** (1.0 / problem.dimension) / problem.h
-    radius = [0.5 * float(np.median(spacing[problem.body == b])) if np.any(problem.body == b) else 0.5
-              for b in range(len(problem.bodies))]  # fmt: skip
     return Walls(
         np.array([w.position for w in problem.walls], dtype=float),
         normals,
         np.array([(w.friction or none).static for w in problem.walls]),
         np.array([(w.friction or none).kinetic for w in problem.walls]),
         wave**2,
-        np.array(radius),
+        _radius(problem),
     )
+
+
+def _radius(problem: Problem) -> Floats:
+    """(bodies,) half the spacing of a particle, in units of its h."""
+    spacing = problem.sections ** (1.0 / problem.dimension) / problem.h
+    mine = [spacing[problem.body == b] for b in range(len(problem.bodies))]
+    return np.array([0.5 * float(np.median(own)) if len(own) else 0.5 for own in mine])
 
 
 def culprit(arrays: Arrays, dimension: int, live: int) -> tuple[int, str] | None:

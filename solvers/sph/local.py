@@ -54,7 +54,7 @@ def classes(p: Problem, wave: Floats, *, xsph: bool) -> NDArray[np.bool_] | None
         "base acceleration by curve": p.body_curve is not None,
         "XSPH": xsph,
         "walls that bear their neighbours' stress": any(b.bearing for b in p.bodies),
-        "particles that a structure drives": p.driven is not None,
+        "a structure": p.driven is not None or p.facets is not None,
     }
     for name, there in hindered.items():
         if there:
@@ -279,7 +279,7 @@ def advance(
                 own = step.force(
                     a, b, shape, z, h, mass, nearest, line, None, None, None, correction, bx, artificial, heat, None,
                     wave, None, None, None, None, None, None, None, plain, None, correction, reference,
-                    None, since, arrays, numbers,
+                    None, None, None, since, arrays, numbers,
                 )  # fmt: skip
                 if c < slow_chunks:
                     met = _meet(

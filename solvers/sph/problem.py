@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ..contact.friction import Coulomb, Drag
 from ..contact.plane import Wall
 from ..materials import Law
+from .facing import Facets
 from .ghosts import PERIODIC, Plane
 from .rings import AXIS, TURN
 from .smoothing import shape_of
@@ -84,7 +85,7 @@ class Problem:
     (their centres turn nothing exactly). local_steps: stiff bodies take several steps within one of the others
     (`local`); None: where that goes and is worth while. axisymmetric: a plane problem whose x is the distance from the
     axis y; masses are those of whole rings (`rings`). driven: (n,) particles whose velocity is given from outside, as
-    nodes of a structure (`driving`).
+    nodes of a structure (`driving`); facets: the surface of a structure that they touch (`facing`).
     """
 
     dimension: int
@@ -125,6 +126,7 @@ class Problem:
     local_steps: bool | None = False
     axisymmetric: bool = False
     driven: NDArray[np.bool_] | None = None
+    facets: Facets | None = None
 
     def __post_init__(self) -> None:
         n = len(self.x)
@@ -185,7 +187,7 @@ class Problem:
                 p.axis == 0 and p.side < 0 and p != AXIS for p in self.planes
             ),
             "a periodic plane across x": any(p.axis == 0 and p.kind == PERIODIC for p in self.planes),
-            "particles that a structure drives": self.driven is not None,
+            "a structure": self.driven is not None or self.facets is not None,
             "a rigid plane that is not normal to the axis": any(w.normal[0] != 0.0 for w in self.walls),
             "a body force across the axis": self.body_force[0] != 0.0
             or (self.body_curve is not None and bool(np.any(self.body_curve[1][:, 0]))),

@@ -7,6 +7,7 @@ import numpy as np
 from ..materials import constant_wave, sound_speed, state_rows
 from ..neighbours import FAR
 from .contact import Contact
+from .facing import slip_rows
 from .particle import DRIVEN
 from .problem import STEP_OPTIONS, Cures, Problem
 from .smoothing import Shape, normaliser, value_at
@@ -34,7 +35,7 @@ def rows_of(p: Problem, contact: Contact, cures: Cures, *, local: bool) -> Rows:
     """The optional rows that a run has. cures: that apply, none where all bodies are total-Lagrangian; local: steps."""
     return Rows(
         state=max(state_rows(b.law) for b in p.bodies),
-        contact=p.apart or bool(p.walls),
+        contact=p.apart or bool(p.walls) or p.facets is not None,
         correction=cures.correction,
         artificial=cures.artificial_stress > 0.0,
         heat=any(b.alpha or b.beta for b in p.bodies),
@@ -52,6 +53,7 @@ def rows_of(p: Problem, contact: Contact, cures: Cures, *, local: bool) -> Rows:
         local=local,
         hoop=p.axisymmetric,
         driven=p.driven is not None,
+        face_slip=slip_rows(p.dimension) if contact.rubs else 0,
     )
 
 

@@ -22,6 +22,7 @@ from ..threads import available, run
 from . import across, blame, ghosts, local, measures, probes, reference, setup, step
 from .contact import contact_of
 from .driving import Driven
+from .facing import Surface
 from .particle import DRIVEN
 from .problem import Cures, Problem
 from .rings import TURN
@@ -188,8 +189,9 @@ class Solver:
             None if images is None else images.sign, None if images is None else images.shift, self._mirrors,
             self._contact.friction, self._contact.damping, self._contact.normals, self._contact.by_normals,
             self._contact.walls, a.wall_slip if has.wall_slip else None, a.contact_heat,
-            True if self._plain else None, a.hoop, self._rows_apart, self._reference, True if has.driven else None, a,
-            self._numbers, self._laws, self._progress, float(until), float(pause), steps, self._spare**2,
+            True if self._plain else None, a.hoop, self._rows_apart, self._reference, True if has.driven else None,
+            None if self._contact.surface is None else self._contact.surface.faces(),
+            a.face_slip if has.face_slip else None, a, self._numbers, self._laws, self._progress, float(until), float(pause), steps, self._spare**2,
         )  # fmt: skip
         return int(found[0])
 
@@ -234,12 +236,14 @@ class Solver:
         h_max = float(s.rows("h_list" if self._has.changing_h else "h")[0, :n].max())
         radius = h_max * self._shape.support
         if self._reference is not None:
+            self._face(n)
             self._relist(radius)
             return
         rows = s.rows("x_list")
         cells = Cells(n, rows[0], rows[1], rows[2] if s.d == 3 else None, radius + self._skin)
         if sort:
             s.sort(self._ordered(cells), self.threads)
+        self._face(n)
         if self._mirrored:
             self._make_images(radius + self._skin)
         x, y, z = s.row("x_list", 0), s.row("x_list", 1), s.row("x_list", 2)
@@ -264,6 +268,16 @@ class Solver:
                     cells, x, y, z, radius=radius, skin=self._skin, h=h, group=group, other=other, threads=self.threads,
                     dummy=s.dummy,
                 )  # fmt: skip
+
+    def _face(self, n: int) -> None:
+        """List the facets near each particle."""
+        surface = self._contact.surface
+        if surface is not None:
+            s = self._state
+            x, y, z = (s.row("x_list", k) for k in range(3))
+            assert x is not None
+            assert y is not None
+            surface.build(x, y, z, n, surface.largest(s.rows("h")[0, :n], s.material[:n]), self._spare)
 
     def _relist(self, radius: float) -> None:
         """The lists beside the reference list, of particles that keep their order."""
@@ -308,9 +322,9 @@ class Solver:
     # what a structure does with the particles that it drives
 
     @property
-    def driven(self) -> Driven:
-        """The driven particles: their rows are read and set between two steps."""
-        return Driven(self._state, self.n)
+    def driven(self) -> Driven | Surface:
+        """What a structure moves, particles or facets: their rows are read and set between two steps."""
+        return self._contact.surface or Driven(self._state, self.n)
 
     def drive(self, velocity: Floats) -> None:
         """From here on driven particles move at these velocities (m, 3)."""
@@ -328,7 +342,7 @@ class Solver:
     @property
     def given_work(self) -> float:
         """Work of what drives particles."""
-        if not self._has.driven:
+        if not self._has.driven and self._contact.surface is None:
             return 0.0
         driven = self.driven
         return self._given - float(np.sum(driven.read("impulse") * driven.read("u")))
@@ -340,7 +354,10 @@ class Solver:
 
     def energies(self) -> dict[str, float]:
         """Energies now, see `measures.energies`."""
-        return measures.energies(self.problem, self._state, self._velocity(), self.given_work)
+        found = measures.energies(self.problem, self._state, self._velocity(), self.given_work)
+        if self._contact.surface is not None:  # what facets give is no particle's work
+            found["contact_energy"] += self.given_work
+        return found
 
     def _contact_force(self) -> Floats:
         """Force [3] of all other bodies on the first one."""
@@ -406,6 +423,7 @@ class Solver:
             "progress": self._progress.copy(),
             "inner": self._inner.copy(),
             "given": self._given,
+            **({} if self._contact.surface is None else self._contact.surface.state()),
             "start_energy": np.array(list(self._start_energy.values())),
             "time": self.time,
             "step": self.step,
@@ -429,3 +447,5 @@ class Solver:
             step.body_force_at(self._progress[step.TIME], self._numbers)
         self._start_energy = dict(zip(self._start_energy, np.asarray(data["start_energy"]).tolist(), strict=True))
         self._rebuild(sort=False)
+        if self._contact.surface is not None:
+            self._contact.surface.restore(data)

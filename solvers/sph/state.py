@@ -33,7 +33,7 @@ class Arrays(NamedTuple):
     traction by normal force, (d, m) each (see `slip`). Of total-Lagrangian bodies: deformation (d*d): F - I;
     hourglass: rows of `nominal`; nominal (d*d): V P M^-1 - kappa (F - I)/2. held (2 d, m): of
     stiff bodies with local steps, see `local`. hoop: r u, see `rings`. impulse, thrust (d, m): of what is driven, see
-    `driving`.
+    `driving`; face_slip: friction on facets, see `facing`.
     """
 
     x: Any
@@ -105,6 +105,7 @@ class Arrays(NamedTuple):
     held: Any
     impulse: Any
     thrust: Any
+    face_slip: Any
 
 
 class Numbers(NamedTuple):
@@ -165,7 +166,7 @@ class Rows:
     state: of the laws; the others say whether: contact, correction, artificial stress, pair viscosity (heat), density
     and stress diffusion, xsph, a changing h, a changing body force, a changing wave speed, heat of contact, slip
     between bodies, normals; wall_slip: walls with friction; total-Lagrangian bodies; local steps; hoop stress of
-    a body of revolution; driven particles.
+    a body of revolution; driven particles; face_slip: rows of friction on facets.
     """
 
     state: int = 0
@@ -187,6 +188,7 @@ class Rows:
     local: bool = False
     hoop: bool = False
     driven: bool = False
+    face_slip: int = 0
 
 
 class State:
@@ -210,7 +212,7 @@ class State:
             "wave": int(has.wave), "b": d if has.artificial else 0, "contact_heat": int(has.contact_heat),
             "slip": (d + 2) * has.slip, "wall_slip": (d + 2) * has.wall_slip,
             "deformation": d * d if has.lagrangian else 0, "hourglass": HOURGLASS if has.lagrangian else 0,
-            "held": 2 * d * has.local, "impulse": d * has.driven,
+            "held": 2 * d * has.local, "impulse": d * has.driven, "face_slip": has.face_slip,
             "state": has.state,
             "gradient": d * d, "s": (d * d if has.correction or has.hoop else 6 if solid else 3), "nearest": 1,
             "c": d if has.contact else 0, "correction": (6 if solid else 3) if has.correction else 0,
@@ -342,4 +344,5 @@ class State:
             held=self.rows("held"),
             impulse=self.rows("impulse"),
             thrust=self.rows("thrust"),
+            face_slip=self.rows("face_slip"),
         )

@@ -17,7 +17,7 @@ import numpy as np
 
 from ..jit import kernel
 from ..threads import barrier, claim, share
-from . import across, bearing, cures, driving, ghosts, lagrangian, nominal, pairs, rings, slip, walls
+from . import across, bearing, cures, driving, facing, ghosts, lagrangian, nominal, pairs, rings, slip, walls
 from .particle import critical_step, drift, each_law, half_work, kick
 
 # entries of `progress`, the loop's own memory
@@ -68,7 +68,7 @@ def strain(
 @kernel
 def force(i0, i1, shape, z, h, mass, nearest, line, cx, contact, mixed, correction, bx, artificial, heat, body_work,
           wave, friction, damping, normals, by_normals, planes, wall_slip, contact_heat, plain, hoop, rows_apart,
-          reference, driven, dt, arrays, numbers):  # fmt: skip
+          reference, driven, faces, face_slip, dt, arrays, numbers):  # fmt: skip
     """Accelerations of a range of particles; returns their critical step."""
     if mixed is not None:
         weight = arrays.volume
@@ -103,6 +103,13 @@ def force(i0, i1, shape, z, h, mass, nearest, line, cx, contact, mixed, correcti
         least = min(
             least, walls.wall_force(i0, i1, z, planes, contact, damping, wall_slip, contact_heat, dt, cx, arrays)
         )
+    if faces is not None:
+        if planes is not None:
+            held = facing.face_force(i0, i1, z, faces, planes, damping, face_slip, contact_heat, dt, cx, arrays)
+        else:
+            held = facing.face_force(i0, i1, z, faces, contact, damping, face_slip, contact_heat, dt, cx, arrays)
+        least = min(least, held)
+        facing.add_impulse(i0, i1, 0.5 * dt, faces)
     if driven is not None:
         if contact is not None:
             driving.thrust_by_contact(i0, i1, z, cx, arrays)
@@ -137,8 +144,8 @@ def advance(
     thread, threads, sync, n, offset, shape, solid, z, h, mass, nearest, line, cx, contact, mixed, correction, bx,
     artificial, h_list, h_start, density_rate, stress_rate, heat, smoothed, smoothing, body_work, wave,
     walled, image_source, image_sign, image_shift, mirrors, friction, damping, normals, by_normals, planes, wall_slip,
-    contact_heat, plain, hoop, rows_apart, reference, driven, arrays, numbers, laws, progress, until, pause, steps,
-    reach2,
+    contact_heat, plain, hoop, rows_apart, reference, driven, faces, face_slip, arrays, numbers, laws, progress, until, pause,
+    steps, reach2,
 ):  # fmt: skip
     """Take up to `steps` steps towards `until`, each thread for its own range; returns why it stopped.
 
@@ -225,8 +232,8 @@ def advance(
                 part = force(
                     c * chunk, min(n, (c + 1) * chunk), shape, z, h, mass, nearest, line, cx, contact, mixed,
                     correction, bx, artificial, heat, body_work, wave, friction, damping, normals, by_normals,
-                    planes, wall_slip, contact_heat, plain, hoop, rows_apart, reference, driven, last, arrays,
-                    numbers,
+                    planes, wall_slip, contact_heat, plain, hoop, rows_apart, reference, driven, faces, face_slip,
+                    last, arrays, numbers,
                 )  # fmt: skip
                 least = min(least, part)
                 c = claim(sync, taken)
@@ -258,6 +265,11 @@ def advance(
         kick(i0, i1, z, cx, bx, body_work, 0.5 * (last + now), now, arrays, numbers)
         if driven is not None:
             driving.add_impulse(i0, i1, 0.5 * now, arrays)
+        if faces is not None:
+            facing.add_impulse(i0, i1, 0.5 * now, faces)
+            facing.move(thread, threads, now, faces)
+            if thread == 0:
+                faces.motion[1] += faces.motion[0] * now
         if smoothed is not None:
             barrier(sync, threads)
             if image_source is not None:
@@ -277,6 +289,8 @@ def advance(
         arrays.reduced[thread, 1] = bad
         barrier(sync, threads)
         moved = arrays.reduced[:threads, 0].max()
+        if faces is not None:
+            moved = (np.sqrt(moved) + faces.motion[1]) ** 2
         bad = arrays.reduced[:threads, 1].max()
         time = until if landed else time + now
         last = now

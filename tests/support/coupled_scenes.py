@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any
 
 import numpy as np
@@ -9,8 +10,10 @@ from fem_meshes import held, plane, quads, shell
 from sph_scenes import lattice
 
 from zrno.solvers import fem, sph
+from zrno.solvers.contact.friction import Coulomb
 from zrno.solvers.coupling import Coupled, Exchange
 from zrno.solvers.materials import Elastic
+from zrno.solvers.sph.facing import Facets
 from zrno.solvers.sph.problem import Body
 
 SOFT = Elastic.from_engineering(50.0, 0.3)
@@ -46,6 +49,20 @@ def block(structure: fem.Problem, *, speed: float = 1.0, gap: float = 0.0, side:
         "potential": True, "driven": np.arange(n + m) >= n, "fixed": np.zeros((n + m, 3), bool),
     }  # fmt: skip
     return sph.Problem(**given | changes)
+
+
+def facing(structure: fem.Problem, *, friction: Coulomb | None = None, **changes: Any) -> sph.Problem:
+    """The same block, and the plate's elements as facets."""
+    whole = block(structure, **changes)
+    quads = structure.elements[0].nodes
+    corners = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    count = len(corners)
+    facets = Facets(structure.x, corners, np.full(count, 0.5 * THICKNESS), np.zeros(count, bool), friction)
+    n = int(np.count_nonzero(whole.body == 0))
+    return dataclasses.replace(
+        whole, x=whole.x[:n], v=whole.v[:n], mass=whole.mass[:n], h=whole.h[:n], density=whole.density[:n],
+        body=whole.body[:n], bodies=whole.bodies[:1], potential=False, driven=None, fixed=None, facets=facets,
+    )  # fmt: skip
 
 
 def drop(structure: fem.Problem, particles: sph.Problem, *, threads: int = 1, **exchange: Any) -> Coupled:
