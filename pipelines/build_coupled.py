@@ -19,6 +19,7 @@ from zrno.pipelines.wetted import Wetted, wetted
 from zrno.solvers import fem, sph
 from zrno.solvers.coupling import Exchange
 from zrno.solvers.materials import Elastic
+from zrno.solvers.sph.facing import Facets
 from zrno.translators.model import Material, Model
 from zrno.translators.text import Fault, InputError
 from zrno.translators.yaml_marks import Place
@@ -53,10 +54,14 @@ def coupled_problem(
     if control.dimension != steel.dimension:
         message = f"particles in {control.dimension} dimensions and a structure in {steel.dimension}"
         raise InputError([Fault(paths[0], 1, 1, message, str(control.dimension), str(steel.dimension))])
+    assert grain.particles is not None
+    offset = int(grain.particles.material.max())
+    if how.contact == "face" and not original:
+        particles = _facing(grain, paths[0], surface, how, of_particles or Sph(), places)
+        return particles, structure, _exchange(how, surface.nodes, offset)
     chosen = _method(of_particles or Sph(), how)
     law = contact.law_of_contact(control, chosen)
-    offset = max(grain.particles.material) if grain.particles is not None else 0
-    whole = _with_nodes(grain, steel, nodes, int(offset) + 1)
+    whole = _with_nodes(grain, steel, nodes, offset + 1)
     if law == "kernel" and not original:
         _as_grain(whole, surface, nodes)
     problem = particle_problem(whole, paths[0], places=places, original=original, method=chosen)
@@ -71,14 +76,31 @@ def coupled_problem(
         bodies[-1] = dataclasses.replace(bodies[-1], strength=0.0, exponent=bodies[0].exponent)
     if whole.warnings != grain.warnings:
         grain.warnings[:] = whole.warnings
-    exchange = Exchange(
-        nodes=nodes,
-        tolerance=how.tolerance or 0.0,
-        most=how.most,
-        original=original,
-        offset=int(offset),
-    )
+    exchange = _exchange(how, nodes, offset, original=original)
     return dataclasses.replace(problem, driven=driven, bodies=tuple(bodies)), structure, exchange
+
+
+def _exchange(how: Coupling, nodes: Any, offset: int, *, original: bool = False) -> Exchange:
+    return Exchange(nodes=nodes, tolerance=how.tolerance or 0.0, most=how.most, original=original, offset=offset)
+
+
+def _facing(
+    grain: Model, path: str, surface: Wetted, how: Coupling, method: Sph, places: Mapping[str, Place] | None
+) -> sph.Problem:
+    """The particles and the structure's facets. A material of the structure's in their deck does nothing."""
+    assert grain.particles is not None
+    assert grain.particle_control is not None
+    own = np.unique(grain.particles.material).tolist()
+    alone = dataclasses.replace(grain, materials={number: grain.materials[number] for number in own})
+    problem = particle_problem(alone, path, places=places, method=method)
+    facets = Facets(
+        surface.x,
+        surface.facets,
+        surface.half,
+        surface.closed,
+        contact.friction_of(grain.particle_control, how.friction),
+    )
+    return dataclasses.replace(problem, facets=facets)
 
 
 def _method(method: Sph, how: Coupling) -> Sph:

@@ -56,6 +56,15 @@ def unused(control: ParticleControl, method: Sph) -> str:
     return "the friction of card 7 does nothing: with kernel contact (contact 0) bodies stick; contact 1 repels"
 
 
+def friction_of(control: ParticleControl, friction: Friction | None) -> Coulomb | None:
+    """Of facets: what the scene says, or else card 7 of the deck."""
+    if friction is not None:
+        return _coulomb(friction)
+    if control.friction is None:
+        return None
+    return Coulomb(control.friction[0], min(control.friction))
+
+
 def _coulomb(friction: Friction | None) -> Coulomb | None:
     return None if friction is None else Coulomb(friction.static, friction.kinetic)
 

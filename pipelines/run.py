@@ -194,7 +194,7 @@ def _observers(
 def _step_observers(
     models: Sequence[Model], scene: Scene | None, directory: Path, decks: Mapping[str, str], *, resume: bool
 ) -> tuple[ResultSeries, History, Checkpointer]:
-    """Of a structure, alone or with particles: a row and a frame a step, or the steps that the deck plots; checkpoints some times a run."""
+    """Of a structure, alone or with particles: a row and a frame a step, or the steps that the deck plots."""
     fem = models[-1].fem_control
     assert fem is not None
     names = {i: m.name for i, m in models[0].materials.items()}

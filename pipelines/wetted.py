@@ -18,13 +18,15 @@ Ints = NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True)
 class Wetted:
-    """nodes: (m,) indices into the model's; facets: (f, 3) triangles or (f, 2) segments, indices into `nodes`.
+    """nodes: (m,) indices into the model's; x: (m, 3) their places; facets: (f, 3) triangles
+    or (f, 2) segments, indices into `nodes`.
 
     half: (f,) half the thickness of shells, 0 elsewhere; closed: (f,) whether the facet bounds a solid, whose outside
     is where its normal points (of a segment: to the right of its way); area: (m,) of each node, a length in the plane.
     """
 
     nodes: Ints
+    x: Floats
     facets: Ints
     half: Floats
     closed: NDArray[np.bool_]
@@ -66,8 +68,9 @@ def wetted(model: Model, parts: Collection[int] | None = None) -> Wetted:
         if flat
         else 0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
     )
-    area = np.bincount(every.ravel(), np.repeat(size / every.shape[1], every.shape[1]), minlength=len(nodes))
-    return Wetted(nodes, every, np.concatenate(half), np.concatenate(closed), area)
+    corners = len(every[0])
+    area: Floats = np.bincount(every.ravel(), np.repeat(size / corners, corners), minlength=len(nodes)).astype(float)
+    return Wetted(nodes, x, every, np.concatenate(half), np.concatenate(closed), area)
 
 
 def _cycle(kind: str, face: int) -> list[tuple[int, int, int]]:

@@ -209,7 +209,8 @@ class Solver:
         """The state, to be restored in this process: what speeds up the next step stays."""
         data: dict[str, Any] = {name: getattr(self, name) for name in _KEPT}
         data |= {"u": self.shape.u, "external_work": self.external_work, "damped": self.damped,
-                 "damping": self._damping, "support_impulse": self.support_impulse, "time": self.time, "step": self.step, "dt": self.dt,
+                 "damping": self._damping, "support_impulse": self.support_impulse,
+                 "time": self.time, "step": self.step, "dt": self.dt,
                  "start_energy": self.start_energy, "iterations": self.iterations}  # fmt: skip
         if self.loads.contact is not None:
             data["contact"] = self.loads.contact

@@ -89,9 +89,7 @@ def _nearest(faces, f, px, py, pz, z, out):
         w0, w1, w2, inside = nearest_on_triangle(
             px, py, pz, x[0, a], x[1, a], x[2, a], x[0, b], x[1, b], x[2, b], x[0, c], x[1, c], x[2, c]
         )
-        nx, ny, nz = normal_of_triangle(
-            x[0, a], x[1, a], x[2, a], x[0, b], x[1, b], x[2, b], x[0, c], x[1, c], x[2, c]
-        )
+        nx, ny, nz = normal_of_triangle(x[0, a], x[1, a], x[2, a], x[0, b], x[1, b], x[2, b], x[0, c], x[1, c], x[2, c])
         out[2] = w2
         dx = px - w0 * x[0, a] - w1 * x[0, b] - w2 * x[0, c]
         dy = py - w0 * x[1, a] - w1 * x[1, b] - w2 * x[1, c]
@@ -313,9 +311,7 @@ def face_force(i0, i1, z, faces, law, damping, slip, heat, dt, cx, arrays):
                     if not taken[s]:
                         at = s * size
                         slip[at + d : at + 2 * d, i] = 0.0
-                        slip[at + size - 1, i] = follow(
-                            slip[at + size - 1, i], 0.0, dt, FORGET * wave, arrays.h[i]
-                        )
+                        slip[at + size - 1, i] = follow(slip[at + size - 1, i], 0.0, dt, FORGET * wave, arrays.h[i])
             if total > 0.0:
                 least = min(least, stable_step(mass, total, damping))
             a0 /= mass
@@ -387,7 +383,7 @@ class Surface:
         friction = self.facets.friction or Coulomb(0.0, 0.0)
         return Faces(
             self.x, self.v, self.motion, self.facets.corners, self.facets.half, self.facets.closed,
-            friction.static, friction.kinetic, self._stiff, self._radius, *self._list, *self._pairs,
+            friction.static, friction.kinetic, self._stiff, self._radius, *self._list, *self._pairs,  # type: ignore[call-arg]
         )  # fmt: skip
 
     def build(self, x: Floats, y: Floats, z: Floats | None, n: int, largest: float, spare: float) -> None:

@@ -200,7 +200,9 @@ class Problem:
     @property
     def held(self) -> NDArray[np.bool_]:
         """(n,) particles that no force moves: fixed in all directions, or driven."""
-        held = np.zeros(len(self.x), bool) if self.fixed is None else self.fixed[:, : self.dimension].all(axis=1)
+        held = np.zeros(len(self.x), bool)
+        if self.fixed is not None:
+            held |= self.fixed[:, : self.dimension].all(axis=1)
         return held if self.driven is None else held | self.driven
 
     @property

@@ -191,7 +191,8 @@ class Solver:
             self._contact.walls, a.wall_slip if has.wall_slip else None, a.contact_heat,
             True if self._plain else None, a.hoop, self._rows_apart, self._reference, True if has.driven else None,
             None if self._contact.surface is None else self._contact.surface.faces(),
-            a.face_slip if has.face_slip else None, a, self._numbers, self._laws, self._progress, float(until), float(pause), steps, self._spare**2,
+            a.face_slip if has.face_slip else None, a, self._numbers, self._laws,
+            self._progress, float(until), float(pause), steps, self._spare**2,
         )  # fmt: skip
         return int(found[0])
 

@@ -144,8 +144,8 @@ def advance(
     thread, threads, sync, n, offset, shape, solid, z, h, mass, nearest, line, cx, contact, mixed, correction, bx,
     artificial, h_list, h_start, density_rate, stress_rate, heat, smoothed, smoothing, body_work, wave,
     walled, image_source, image_sign, image_shift, mirrors, friction, damping, normals, by_normals, planes, wall_slip,
-    contact_heat, plain, hoop, rows_apart, reference, driven, faces, face_slip, arrays, numbers, laws, progress, until, pause,
-    steps, reach2,
+    contact_heat, plain, hoop, rows_apart, reference, driven, faces, face_slip, arrays, numbers, laws, progress, until,
+    pause, steps, reach2,
 ):  # fmt: skip
     """Take up to `steps` steps towards `until`, each thread for its own range; returns why it stopped.
 

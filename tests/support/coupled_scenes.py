@@ -1,4 +1,4 @@
-"""A block of particles and a plate that several tests bring together. Units: mm, ms, g; forces in N, stresses in MPa."""
+"""A block of particles and a plate that several tests bring together. Units: mm, ms, g, N, MPa."""
 
 from __future__ import annotations
 
@@ -32,7 +32,9 @@ def plate(*, clamped: bool = True, period: float = 0.02, steps: int = 50, **chan
     return fem.Problem("plate", 3, x, np.arange(1, len(x) + 1), (elements,), fixed, **given | changes)
 
 
-def block(structure: fem.Problem, *, speed: float = 1.0, gap: float = 0.0, side: int = 4, **changes: Any) -> sph.Problem:
+def block(
+    structure: fem.Problem, *, speed: float = 1.0, gap: float = 0.0, side: int = 4, **changes: Any
+) -> sph.Problem:
     """A block above the middle of a plate, moving down, and the plate's nodes behind it."""
     low = 0.5 * (SIDE - side * SPACING)
     x = lattice((side, side, side), (low, low, gap + 0.5 * SPACING), SPACING)
