@@ -43,6 +43,8 @@ def coupled_problem(
     Raises InputError for what the decks ask and is not done, ValueError for what does not go together.
     """
     structure = structure_problem(steel, paths[1], of_structure)
+    if how.rigid or _all_given(structure):
+        structure = dataclasses.replace(structure, rigid=True)
     surface = wetted(steel, _parts(steel, how, paths[1]))
     nodes = np.arange(len(steel.xyz)) if original or _all_nodes(grain, steel) else surface.nodes
     overrun = grain.velocity_overrun
@@ -78,6 +80,16 @@ def coupled_problem(
         grain.warnings[:] = whole.warnings
     exchange = _exchange(how, nodes, offset, original=original)
     return dataclasses.replace(problem, driven=driven, bodies=tuple(bodies)), structure, exchange
+
+
+def _all_given(structure: fem.Problem) -> bool:
+    """Whether the motion of every node of an element is prescribed or held: then nothing needs to be solved."""
+    given = structure.fixed[:, :3].copy()
+    for motion in structure.motions:
+        along = motion.dofs < 3
+        given[motion.nodes[along], motion.dofs[along]] = True
+    used = np.unique(np.concatenate([e.nodes.ravel() for e in structure.elements]))
+    return bool(given[used, : structure.dimension].all())
 
 
 def _exchange(how: Coupling, nodes: Any, offset: int, *, original: bool = False) -> Exchange:

@@ -14,7 +14,8 @@ class Coupling(Section):
     """How grain and structure meet, where it is not as the particle deck says.
 
     surface: the wetted elements: all, or numbers of groups of elements; contact: None as the deck says; tolerance: of
-    the force in a period, relative: each period is iterated to it (strong coupling), once without; most: iterations.
+    the force in a period, relative: each period is iterated to it (strong coupling), once without; most: iterations;
+    rigid: the structure does not deform, it moves as its prescribed and held nodes do, and nothing is solved.
     """
 
     surface: str | int | list[str | int] = "all"
@@ -22,6 +23,7 @@ class Coupling(Section):
     friction: Friction | None = None
     tolerance: Positive | None = None
     most: Annotated[int, Field(ge=2, le=200)] = 30
+    rigid: bool = False
 
 
 def of_options(options: Mapping[str, Any]) -> Coupling:

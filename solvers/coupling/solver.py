@@ -71,6 +71,7 @@ class Coupled:
         self._largest = 0.0  # force of a period so far
         self._relaxation = FIRST_RELAXATION
         self._told = False
+        self._moved = np.zeros((m, 3))  # of the nodes in the last period
         self.seconds = {"structure": 0.0, "particles": 0.0}
         self._start_energy = self._energies()
 
@@ -110,7 +111,12 @@ class Coupled:
             self._as_original()
             return
         period, carried = s.period, self.pending
-        if self.exchange.tolerance:
+        if s.guided:  # it goes its way whatever pushes it: the force is that of the period itself
+            _, impulse = self._exchange(self.force)
+            force = impulse / period
+            work = float(np.sum(force * self._moved))
+            self._press(force)
+        elif self.exchange.tolerance:
             force, work, impulse = self._iterated(carried, period)
         else:
             force = carried / period
@@ -162,7 +168,7 @@ class Coupled:
         start, before = s.time, np.zeros_like(force) if s.loads.contact is None else s.loads.contact[nodes, :3]
         self._press(force)
         self._lead()
-        moved = s.shape.u[nodes, :3] - u
+        self._moved = moved = s.shape.u[nodes, :3] - u
         mean = force if s.moving else 0.5 * (force + before)
         self._follow(s.time - start)
         return float(np.sum(mean * moved)), p.take_impulse()

@@ -57,6 +57,7 @@ class Assembly:
         for group in self.groups:
             used = np.unique(group.elements.nodes)
             active[np.ix_(used, group.dofs)] = True
+        self.active_before_fixing = active
         self.active = active & ~problem.fixed
         self.prescribed = np.zeros((self.n, 6), bool)
         for motion in problem.motions:

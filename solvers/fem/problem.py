@@ -182,7 +182,7 @@ class Problem:
 
     x: (n, 3); node_ids: (n,) of the deck; fixed: (n, 6) held at zero; free: (n, 6) False where the deck suppresses
     a degree of freedom of all nodes; steps: (periods, 2) number and length; modes: eigenvalues asked for, 0 none.
-    displacement, velocity: (n, 6) at the start, or None.
+    displacement, velocity: (n, 6) at the start, or None. rigid: nothing is solved, see `guided`.
     """
 
     title: str
@@ -205,6 +205,7 @@ class Problem:
     displacement: Floats | None = None
     velocity: Floats | None = None
     solver: str = "auto"
+    rigid: bool = False
 
     def ends(self) -> Floats:
         """(steps + 1,) when each step ends, the start first."""

@@ -15,6 +15,7 @@ from . import output
 from .arc import PathFollowing
 from .assembly import AXES, Assembly, Mechanism
 from .equilibrium import NotConverged
+from .guided import Guided
 from .loads import Loads
 from .problem import Problem
 from .procedures import Explicit, Increments, Procedure, Superposition, Vibrations
@@ -66,6 +67,8 @@ class Solver:
 
     def _procedure(self) -> Procedure:
         p = self.problem
+        if p.rigid:
+            return Guided(self)
         if p.modes:
             return Vibrations()
         if p.path is not None:
@@ -149,6 +152,15 @@ class Solver:
         return self.procedure.velocity(self) is not None
 
     @property
+    def guided(self) -> bool:
+        """Whether its motion is given, whatever pushes it."""
+        return isinstance(self.procedure, Guided)
+
+    def hold(self, external: Floats) -> None:
+        """Loads (n, 6) that are held where they act."""
+        self.external_forces, self.reaction = external, -external
+
+    @property
     def period(self) -> float:
         """Length of the next step."""
         return float(self._ends[self.step + 1]) - self.time
@@ -165,6 +177,8 @@ class Solver:
         """
         before = self.loads.contact
         self.loads.contact = forces
+        if self.guided:
+            self.hold(self.external_forces + (forces if before is None else forces - before))
         if self.moving and at_once:
             change = forces if before is None else forces - before
             self.external_forces = self.external_forces + change
