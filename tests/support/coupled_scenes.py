@@ -17,6 +17,7 @@ from zrno.solvers.sph.facing import Facets
 from zrno.solvers.sph.problem import Body
 
 SOFT = Elastic.from_engineering(50.0, 0.3)
+HARD = Elastic.from_engineering(5.0e3, 0.3)
 STEEL = Elastic.from_engineering(7.0e4, 0.33)
 SPACING, ELEMENTS, SIDE, THICKNESS = 2.0, 8, 16.0, 1.0
 DENSITY = 2.0e-3  # of both
@@ -33,11 +34,17 @@ def plate(*, clamped: bool = True, period: float = 0.02, steps: int = 50, **chan
 
 
 def block(
-    structure: fem.Problem, *, speed: float = 1.0, gap: float = 0.0, side: int = 4, **changes: Any
+    structure: fem.Problem,
+    *,
+    speed: float = 1.0,
+    gap: float = 0.0,
+    side: int = 4,
+    law: Any = SOFT,
+    **changes: Any,
 ) -> sph.Problem:
-    """A block above the middle of a plate, moving down, and the plate's nodes behind it."""
+    """A block above the middle of a plate (gap: from its mid-surface), moving down, and the plate's nodes behind it."""
     low = 0.5 * (SIDE - side * SPACING)
-    x = lattice((side, side, side), (low, low, gap + 0.5 * SPACING), SPACING)
+    x = lattice((side, side, side), (low, low, gap), SPACING)
     n, m = len(x), len(structure.x)
     mass = np.full(n + m, DENSITY * SPACING**3)
     v = np.zeros((n + m, 3))
@@ -46,7 +53,7 @@ def block(
     given: dict[str, Any] = {
         "dimension": 3, "x": np.concatenate([x, structure.x]), "v": v, "mass": mass, "h": np.full(n + m, 1.3 * SPACING),
         "density": np.full(n + m, DENSITY), "body": np.repeat([0, 1], [n, m]), "end_time": structure.end_time,
-        "bodies": (Body(1, "block", SOFT, DENSITY, strength=strength, exponent=2.0),
+        "bodies": (Body(1, "block", law, DENSITY, strength=strength, exponent=2.0),
                    Body(2, "plate", STEEL, DENSITY, strength=0.0, exponent=2.0)),
         "potential": True, "driven": np.arange(n + m) >= n, "fixed": np.zeros((n + m, 3), bool),
     }  # fmt: skip

@@ -1,0 +1,123 @@
+"""A block of particles and a plate of shells: what one gives the other receives."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from coupled_scenes import DENSITY, HARD, SIDE, THICKNESS, block, drop, facing, momentum, plate
+
+from zrno.solvers import fem
+from zrno.solvers.contact.friction import Coulomb
+
+SPEED = 2.0
+STEPS = 60
+
+
+def run(coupled, steps=STEPS):
+    for _ in range(steps):
+        coupled.advance(math.inf, 1)
+    return coupled
+
+
+@pytest.fixture(scope="module")
+def bounced():
+    """Dropped on a clamped plate and iterated; the block has left it again."""
+    return run(drop(plate(steps=STEPS), facing(plate(), gap=1.55, speed=SPEED), tolerance=1e-3))
+
+
+def test_the_drop_keeps_momentum_and_energy(bounced):
+    start = momentum(drop(plate(), facing(plate(), gap=1.55, speed=SPEED)))
+    row = bounced.history()
+    assert row["momentum_z"] > 1.0  # it has bounced
+    assert np.abs(momentum(bounced) - start).max() < 1e-12 * abs(start[2])
+    assert bounced.energy_report()["balance_error"] < 0.01
+    assert abs(row["interface_energy"]) < 1e-4 * row["kinetic"]
+
+
+def test_weak_coupling_keeps_momentum_and_makes_energy():
+    """The reason for iterating: the force of the period before is that of another place."""
+    weak = drop(plate(steps=STEPS), facing(plate(), gap=1.55, speed=SPEED))
+    start = momentum(weak)
+    run(weak)
+    assert np.abs(momentum(weak) - start).max() < 1e-12 * abs(start[2])
+    row = weak.history()
+    assert row["interface_energy"] > 0.1 * row["kinetic"]
+    made = weak.energy_report()["balance_error"] * row["kinetic"]
+    assert made == pytest.approx(row["interface_energy"], rel=0.2)  # that is what the balance lacks
+
+
+@pytest.mark.parametrize("contact", ["particles", "facets"])
+def test_a_free_plate_takes_all_of_the_momentum(contact):
+    structure = plate(clamped=False, steps=STEPS)
+    friction = Coulomb(0.5, 0.4)
+    grain = (
+        facing(structure, gap=1.55, speed=SPEED, friction=friction)
+        if contact == "facets"
+        else block(structure, gap=4.5, speed=SPEED)
+    )
+    coupled = drop(structure, grain, tolerance=1e-3)
+    start = momentum(coupled)
+    run(coupled)
+    assert coupled.structure.history()["momentum_z"] < -0.01
+    assert np.abs(momentum(coupled) - start).max() < 1e-11 * abs(start[2])
+
+
+def test_threads_and_a_checkpoint_change_nothing(bounced):
+    grain = facing(plate(), gap=1.55, speed=SPEED, side=4)
+    other = drop(plate(steps=STEPS), grain, tolerance=1e-3)
+    run(other, 30)
+    kept = {k: v.copy() if isinstance(v, np.ndarray) else v for k, v in other.checkpoint().items()}
+    run(other, 10)
+    again = drop(plate(steps=STEPS), grain, tolerance=1e-3)
+    again.restore(kept)
+    run(again, 10)
+    one, two = other.frame(), again.frame()
+    for name, values in one.particles.items():
+        assert np.array_equal(values, two.particles[name]), name
+    assert np.array_equal(one.nodes["displacement"], two.nodes["displacement"])
+    assert other.history() == again.history()
+
+
+def test_the_force_at_rest_is_the_weight():
+    """A block let down on a rigid plate: the plate bears it, and nothing is solved."""
+    structure = dataclasses.replace(plate(steps=400, period=0.25), rigid=True, dynamics=None)
+    grain = dataclasses.replace(facing(structure, gap=0.5), body_force=(0.0, 0.0, -0.00981), relaxation=0.98)
+    grain.v[:] = 0.0
+    coupled = run(drop(structure, grain), 200)
+    weight = 64 * DENSITY * 8.0 * 0.00981
+    assert coupled.history()["structure_force_z"] == pytest.approx(-weight, rel=0.005)
+    assert coupled.structure.guided
+    assert coupled.pending.max() == 0.0
+
+
+def test_a_rigid_structure_turns_as_its_nodes_are_moved():
+    """One edge held, the other lifted: the plate turns as a whole, about the edge that is held."""
+    structure = plate(clamped=False)
+    low, high = np.flatnonzero(structure.x[:, 0] == 0.0), np.flatnonzero(structure.x[:, 0] == SIDE)
+    fixed = structure.fixed.copy()
+    fixed[low, :3] = True
+    angle = 0.3
+    motion = fem.Motion(high, np.full(len(high), 2), np.full(len(high), SIDE * math.sin(angle)))
+    turned = dataclasses.replace(
+        structure, rigid=True, dynamics=None, fixed=fixed, motions=(motion,), steps=((1, 1.0),)
+    )
+    solver = fem.Solver(turned)
+    solver.advance(math.inf, 1)
+    x = structure.x + solver.shape.u[:, :3]
+    wanted = np.column_stack(
+        [structure.x[:, 0] * math.cos(angle), structure.x[:, 1], structure.x[:, 0] * math.sin(angle)]
+    )
+    assert np.abs(x - wanted).max() < 1e-9 * SIDE
+
+
+def test_no_grain_passes_a_thin_plate():
+    """50 m/s against 2 mm: particles of 2 mm would cross it in 1/25 ms, the structure's step."""
+    structure = dataclasses.replace(plate(steps=100, period=0.01), rigid=True, dynamics=None)
+    coupled = drop(structure, facing(structure, gap=2.0, speed=50.0, law=HARD))
+    run(coupled, 60)
+    below = coupled.frame().particles["position"][:, 2] < 0.5 * THICKNESS - 0.5
+    assert not below.any()
+    assert coupled.history()["momentum_z"] > 0.0
