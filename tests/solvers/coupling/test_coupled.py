@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from coupled_scenes import DENSITY, HARD, SIDE, THICKNESS, block, drop, facing, momentum, plate
+from coupled_scenes import DENSITY, HARD, SIDE, SPACING, THICKNESS, block, drop, facing, momentum, plate
 
 from zrno.solvers import fem
 from zrno.solvers.contact.friction import Coulomb
@@ -121,3 +121,52 @@ def test_no_grain_passes_a_thin_plate():
     below = coupled.frame().particles["position"][:, 2] < 0.5 * THICKNESS - 0.5
     assert not below.any()
     assert coupled.history()["momentum_z"] > 0.0
+
+
+RUBBED = Coulomb(0.5, 0.4)
+GRAVITY = 0.00981
+
+
+def on_an_incline(degrees: float, friction: Coulomb | None = RUBBED):
+    """A block on a wide rigid plate that is tilted slowly, from 5 to 25 ms; its motion along the slope from 40 to 60 ms."""
+    structure = plate(steps=4000, period=0.5)
+    wide = structure.x.copy()
+    wide[:, :2] = 8.0 + 40.0 * (wide[:, :2] - 8.0)
+    structure = dataclasses.replace(structure, x=wide, rigid=True, dynamics=None)
+    angle, times = math.radians(degrees), np.linspace(0.0, 30.0, 31)
+    tilt = angle * np.clip((times - 5.0) / 20.0, 0.0, 1.0)
+    along, across = GRAVITY * np.sin(tilt), -GRAVITY * np.cos(tilt) * np.clip(times / 5.0, 0.0, 1.0)
+    curve = times, np.column_stack([along, np.zeros_like(times), across])
+    grain = facing(structure, gap=0.5, friction=friction, contact_damping=0.3, body_curve=curve)
+    grain.v[:] = 0.0
+    coupled = drop(structure, grain)
+    run(coupled, 80)
+    before = coupled.frame().particles
+    run(coupled, 40)
+    arrays = coupled.frame().particles
+    faster, way = (float((arrays[k] - before[k])[:, 0].mean()) for k in ("velocity", "displacement"))
+    force = coupled.history()["structure_force_z"] / (64 * DENSITY * 8.0 * GRAVITY * math.cos(angle))
+    return faster / 20.0, way, force
+
+
+@pytest.mark.parametrize(
+    "degrees", [20.0, 30.0, *(pytest.param(a, marks=pytest.mark.slow) for a in (5, 15, 25, 28, 40))]
+)
+def test_a_block_on_an_incline(degrees):
+    """Sticks below mu_s = tan 26.6 degrees without creep, slides above with g (sin - mu_k cos)."""
+    acceleration, way, force = on_an_incline(degrees)
+    angle = math.radians(degrees)
+    assert force == pytest.approx(-1.0, rel=1e-3)
+    if math.tan(angle) < RUBBED.static:
+        assert abs(acceleration) < 1e-6 * GRAVITY
+        assert abs(way) < 1e-6 * SPACING
+    else:
+        wanted = GRAVITY * (math.sin(angle) - RUBBED.kinetic * math.cos(angle))
+        assert acceleration == pytest.approx(wanted, rel=0.001)
+
+
+@pytest.mark.slow
+def test_without_friction_it_slides_freely():
+    acceleration, _, force = on_an_incline(20.0, None)
+    assert acceleration == pytest.approx(GRAVITY * math.sin(math.radians(20.0)), rel=0.001)
+    assert force == pytest.approx(-1.0, rel=1e-3)
