@@ -128,7 +128,7 @@ GRAVITY = 0.00981
 
 
 def on_an_incline(degrees: float, friction: Coulomb | None = RUBBED):
-    """A block on a wide rigid plate that is tilted slowly, from 5 to 25 ms; its motion along the slope from 40 to 60 ms."""
+    """A block on a wide rigid plate that is tilted from 5 to 25 ms; its motion along the slope from 40 to 60 ms."""
     structure = plate(steps=4000, period=0.5)
     wide = structure.x.copy()
     wide[:, :2] = 8.0 + 40.0 * (wide[:, :2] - 8.0)
