@@ -60,7 +60,7 @@ def coupled_problem(
     offset = int(grain.particles.material.max())
     if how.contact == "face" and not original:
         particles = _facing(grain, paths[0], surface, how, of_particles or Sph(), places)
-        return particles, structure, _exchange(how, surface.nodes, offset)
+        return particles, structure, _exchange(how, structure, surface.nodes, offset)
     chosen = _method(of_particles or Sph(), how)
     law = contact.law_of_contact(control, chosen)
     whole = _with_nodes(grain, steel, nodes, offset + 1)
@@ -78,7 +78,7 @@ def coupled_problem(
         bodies[-1] = dataclasses.replace(bodies[-1], strength=0.0, exponent=bodies[0].exponent)
     if whole.warnings != grain.warnings:
         grain.warnings[:] = whole.warnings
-    exchange = _exchange(how, nodes, offset, original=original)
+    exchange = _exchange(how, structure, nodes, offset, original=original)
     return dataclasses.replace(problem, driven=driven, bodies=tuple(bodies)), structure, exchange
 
 
@@ -92,8 +92,18 @@ def _all_given(structure: fem.Problem) -> bool:
     return bool(given[used, : structure.dimension].all())
 
 
-def _exchange(how: Coupling, nodes: Any, offset: int, *, original: bool = False) -> Exchange:
-    return Exchange(nodes=nodes, tolerance=how.tolerance or 0.0, most=how.most, original=original, offset=offset)
+SLOWLY = 0.2  # the share of the grain's force that a structure without inertia gets in a period
+
+
+def _exchange(how: Coupling, structure: fem.Problem, nodes: Any, offset: int, *, original: bool = False) -> Exchange:
+    return Exchange(
+        nodes=nodes,
+        tolerance=how.tolerance or 0.0,
+        most=how.most,
+        relaxation=how.relaxation or (SLOWLY if structure.dynamics is None else 1.0),
+        original=original,
+        offset=offset,
+    )
 
 
 def _facing(

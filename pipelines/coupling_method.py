@@ -15,7 +15,9 @@ class Coupling(Section):
 
     surface: the wetted elements: all, or numbers of groups of elements; contact: None as the deck says; tolerance: of
     the force in a period, relative: each period is iterated to it (strong coupling), once without; most: iterations;
-    rigid: the structure does not deform, it moves as its prescribed and held nodes do, and nothing is solved.
+    rigid: the structure does not deform, it moves as its prescribed and held nodes do, and nothing is solved;
+    relaxation: the share of the grain's force that the structure gets in the next period, the rest in those after it;
+    None: 1 with inertia, 0.2 without, where all at once makes it jump.
     """
 
     surface: str | int | list[str | int] = "all"
@@ -24,6 +26,7 @@ class Coupling(Section):
     tolerance: Positive | None = None
     most: Annotated[int, Field(ge=2, le=200)] = 30
     rigid: bool = False
+    relaxation: Annotated[float, Field(gt=0, le=1)] | None = None
 
 
 def of_options(options: Mapping[str, Any]) -> Coupling:

@@ -34,7 +34,9 @@ class Exchange:
     """What is exchanged, and how.
 
     nodes: (m,) indices of the wetted nodes, in the order of the driven particles; tolerance: of the force in a period,
-    relative, where it is iterated (strong coupling), 0 for once (weak); most: iterations; original: hand back what the
+    relative, where it is iterated (strong coupling), 0 for once (weak); most: iterations; relaxation: share of what is
+    received that the next period gets, the rest comes later (weak coupling with a structure without inertia, which
+    otherwise jumps from under the grain); original: hand back what the
     original programs do, accelerations at the end of the period, none with kernel contact. offset: added to the
     numbers of the structure's materials, which follow the particles'.
     """
@@ -42,6 +44,7 @@ class Exchange:
     nodes: NDArray[np.int64]
     tolerance: float = 0.0
     most: int = 30
+    relaxation: float = 1.0
     original: bool = False
     offset: int = 0
 
@@ -119,7 +122,8 @@ class Coupled:
         elif self.exchange.tolerance:
             force, work, impulse = self._iterated(carried, period)
         else:
-            force = carried / period
+            share = self.exchange.relaxation
+            force = (1.0 - share) * self.force + share * carried / period
             work, impulse = self._exchange(force)
         self.work += work
         self.pending = carried + impulse - force * period
