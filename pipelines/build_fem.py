@@ -20,6 +20,7 @@ from zrno.translators.text import Fault, InputError
 _GEOMETRY = {0: fem.SMALL, 1: fem.SMALL, 2: fem.TOTAL, 3: fem.UPDATED, 4: fem.UPDATED, 5: fem.UPDATED}
 _MODES = {"hex8": 12, "quad4": 4}  # enhanced strains where a deck asks for incompatible modes
 _FACES = {3: "tri3", 4: "quad4", 6: "tri6", 8: "quad8", 9: "quad9"}
+_SHELLS = ("tri3", "quad4", "quad8", "quad9")
 _COMPUTED = ("solid", "plane", "truss", "beam", "shell", "spring", "mass")
 
 
@@ -99,9 +100,9 @@ def refusals(model: Model, path: str) -> list[Fault]:
         if timed:
             said = f"{' and '.join(timed)} of {block.kind} elements"
             faults.append(Fault(path, 1, 1, f"{said} is not computed yet", "", "elements that are there all the time"))
-        if block.family == "shell" and block.kind not in ("tri3", "quad4"):
+        if block.family == "shell" and block.kind not in _SHELLS:
             message = f"shells of the kind {block.kind} are not computed yet"
-            faults.append(Fault(path, 1, 1, message, "", "three or four nodes"))
+            faults.append(Fault(path, 1, 1, message, "", "three, four, eight or nine nodes"))
     for load in model.nodal_loads:
         if load.kind == "temperature":
             at = load.source.line if load.source else 1
@@ -149,6 +150,8 @@ def _group(model: Model, block: ElementBlock, rows: Any, part: int, method: Fem)
     if thickness is None and "thickness" in parameters:
         thickness = np.full(len(ids), parameters["thickness"])
     nodes = block.nodes[rows]
+    if family == "shell" and block.kind in ("quad8", "quad9") and not {*gauss[:2]} <= {0, 3}:
+        model.warnings.append(f"{len(ids)} {block.kind} shells: 3 x 3 points in the plane, not NGAUS of the deck")
     if family == "plane":
         nodes = _counter_clockwise(model, block.kind, nodes)
     return fem.Elements(

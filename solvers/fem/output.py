@@ -38,25 +38,25 @@ def von_mises(stress: Floats) -> Floats:
 
 def frame(solver: Solver) -> Frame:
     """Nodes and elements of a solver, in the order of the deck."""
-    p, a = solver.problem, solver.assembly
-    u = solver.shape.u
+    p, a = solver.given, solver.assembly
+    n = len(p.x)
+    u = solver.shape.u[:n]
     nodes: Arrays = {
         "position": p.x + u[:, :3],
         "id": p.node_ids,
         "displacement": u[:, :3],
-        "reaction": solver.reaction[:, :3],
-        "stress": _nodal_stress(solver),
+        "reaction": solver.reaction[:n, :3],
+        "stress": _nodal_stress(solver)[:n],
     }
     if any(g.dofs.max(initial=0) > 2 for g in a.groups):
         nodes["rotation"] = u[:, 3:]
-        nodes["moment"] = solver.reaction[:, 3:]
+        nodes["moment"] = solver.reaction[:n, 3:]
     velocity = solver.procedure.velocity(solver)
     if velocity is not None:
-        nodes["velocity"] = velocity[:, :3]
+        nodes["velocity"] = velocity[:n, :3]
     nodes["von_mises"] = von_mises(nodes["stress"])
     blocks = []
-    for group in a.groups:
-        e = group.elements
+    for e, group in zip(p.elements, a.groups, strict=True):
         data: Arrays = dict(group.output())
         count = len(e.ids)
         data |= {"id": e.ids, "material": np.full(count, e.material), "von_mises": von_mises(data["stress"])}

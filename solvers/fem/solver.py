@@ -14,6 +14,7 @@ from ..frame import Frame
 from . import output
 from .arc import PathFollowing
 from .assembly import AXES, Assembly, Mechanism
+from .centres import with_centres
 from .equilibrium import NotConverged
 from .loads import Loads
 from .problem import Problem
@@ -28,12 +29,14 @@ _KEPT = ("reaction", "internal_forces", "external_forces")
 class Solver:
     """A structure in time. What a step is, the problem says.
 
-    shape: the last one accepted; reaction: (n, 6) of supports; internal_forces, external_forces: (n, 6) of stresses and
-    of loads there.
+    given: what it was asked; problem: what is computed, with nodes of its own behind those given where elements need
+    them; shape: the last one accepted; reaction: (n, 6) of supports; internal_forces, external_forces: (n, 6) of
+    stresses and of loads there.
     """
 
     def __init__(self, problem: Problem, *, threads: int | None = None) -> None:
-        self.problem = problem
+        self.given = problem
+        self.problem = problem = with_centres(problem)
         self.threads = threads or 1
         self.assembly = Assembly(problem, threads=self.threads)
         self.loads = Loads(problem, self.assembly.groups)

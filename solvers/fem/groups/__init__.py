@@ -29,11 +29,11 @@ _CLASSES: dict[str, Callable[[Elements, NDArray[np.float64]], Group]] = {
 def make_groups(problem: Problem) -> list[Group]:
     """The groups of a problem. ValueError for what is not computed."""
     shells = [k for k, e in enumerate(problem.elements) if e.family == "shell"]
-    corners = [problem.elements[k].nodes[:, :4] for k in shells]
+    corners = [problem.elements[k].nodes for k in shells]
     normals = dict(zip(shells, directors(problem.x, corners, problem.fixed), strict=True)) if shells else {}
     groups: list[Group] = []
     for k, e in enumerate(problem.elements):
-        if e.family == "shell" and e.kind in ("tri3", "quad4"):
+        if e.family == "shell" and e.kind in ("tri3", "quad4", "quad9"):
             groups.append(ShellGroup(e, problem.x, normals[k]))
         elif e.family in _CLASSES:
             groups.append(_CLASSES[e.family](e, problem.x))
