@@ -95,11 +95,12 @@ def refusals(model: Model, path: str) -> list[Fault]:
             structural_law_of(material, model.curves, None if section is None else _axes(section))
         except (Unsupported, ValueError) as error:
             faults.append(Fault(path, at, 1, f"material {material.id}: {error}", "", "a law that is computed"))
+    moving = control.dynamic or control.eigenvalues or control.iteration >= 60
     for block in model.blocks:
         timed = [name for name in ("birth", "death") if np.any(block.data.get(name, 0.0))]
-        if timed:
-            said = f"{' and '.join(timed)} of {block.kind} elements"
-            faults.append(Fault(path, 1, 1, f"{said} is not computed yet", "", "elements that are there all the time"))
+        if timed and moving:
+            said = f"{' and '.join(timed)} of {block.kind} elements in motion, vibration or on a path that is found"
+            faults.append(Fault(path, 1, 1, f"{said} is not computed", "", "statics with loads that are given"))
         if block.family == "shell" and block.kind not in _SHELLS:
             message = f"shells of the kind {block.kind} are not computed yet"
             faults.append(Fault(path, 1, 1, message, "", "three, four, eight or nine nodes"))
@@ -127,9 +128,22 @@ def _elements(model: Model, method: Fem) -> list[fem.Elements]:
     found = []
     for block in model.blocks:
         for part in np.unique(block.part).tolist():
-            rows = block.part == part
             if block.kind in TABLE and model.parts[part].section is not None:
-                found.append(_group(model, block, rows, part, method))
+                found += [_group(model, block, rows, part, method) for rows in _lives(block, block.part == part)]
+    return found
+
+
+def _lives(block: ElementBlock, rows: Any) -> list[Any]:
+    """Elements (rows: a mask) by their times of birth and death."""
+    times = np.column_stack([block.data.get(name, np.zeros(len(block.ids))) for name in ("birth", "death")])
+    own, which = np.unique(times[rows], axis=0, return_inverse=True)
+    if len(own) < 2:
+        return [rows]
+    found = []
+    for k in range(len(own)):
+        some = np.zeros(len(rows), bool)
+        some[np.flatnonzero(rows)[which.ravel() == k]] = True
+        found.append(some)
     return found
 
 

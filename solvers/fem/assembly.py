@@ -11,6 +11,7 @@ from . import linear, structure
 from .elements.points import elastic_modulus
 from .groups import make_groups
 from .groups.group import Sink
+from .groups.timed import TimedGroup
 from .problem import SMALL, Problem
 from .shape import Shape
 
@@ -71,6 +72,8 @@ class Assembly:
         self.where = np.flatnonzero(self.free.ravel())
         self.transform = self._relations() if problem.relations else None
         self._moment_places = self._places_of_moments()
+        self._timed = [g for g in self.groups if isinstance(g, TimedGroup)]
+        self.idle = self._idle()
         self.system = self._system(self.structure.starts, self.structure.columns)
 
     def _system(self, starts: NDArray[np.int32], columns: NDArray[np.int32]) -> linear.System:
@@ -82,6 +85,25 @@ class Assembly:
     def equations(self) -> int:
         """Unknowns."""
         return self.structure.count if self.transform is None else self.transform.shape[1]
+
+    # elements that come and go
+
+    def at(self, time: float, shape: Shape) -> bool:
+        """Before a step from a shape that ends at a time. Returns whether elements came or went."""
+        changed = [group.at(time, shape) for group in self._timed]
+        if any(changed):
+            self.idle = self._idle()
+        return any(changed)
+
+    def _idle(self) -> NDArray[np.bool_]:
+        """(n, 6) the degrees of freedom none of whose elements is there: they stay where they are."""
+        if not self._timed:
+            return np.zeros((self.n, 6), bool)
+        used = np.zeros((self.n, 6), bool)
+        for group in self.groups:
+            if not isinstance(group, TimedGroup) or group.living:
+                used[np.ix_(np.unique(group.elements.nodes), group.dofs)] = True
+        return self.free & ~used
 
     # vectors
 
@@ -115,6 +137,8 @@ class Assembly:
             turning = 0.5 * np.array([[zero, z, -y], [-z, zero, x], [y, -x, zero]]).transpose(2, 0, 1)
             kept = self._moment_places >= 0
             values[self._moment_places[kept]] += turning[kept]
+        if values is not None and self.idle.any():
+            values += self.diagonal_values(np.where(self.idle, self.stiffness, 0.0))
         return sink.forces, sink.of_motion
 
     def _places_of_moments(self) -> NDArray[np.int64]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .elements.shapes import functions
 from .problem import Elements, Problem
@@ -20,12 +21,14 @@ def with_centres(problem: Problem) -> Problem:
         return problem
     n = len(problem.x)
     share = functions("quad8", np.zeros((1, 2)))[0][0]
-    elements, places, owners = [], [], []
+    elements: list[Elements] = []
+    places: list[NDArray[np.float64]] = []
+    owners = []
     for e in problem.elements:
         if not _lacks(e):
             elements.append(e)
             continue
-        first = n + sum(len(p) for p in places)
+        first = n + sum(map(len, places))
         centres = first + np.arange(len(e.nodes))
         places.append(np.einsum("k,ekc->ec", share, problem.x[e.nodes]))
         owners.append(e.nodes)
@@ -52,5 +55,5 @@ def _lacks(elements: Elements) -> bool:
     return elements.family == "shell" and elements.kind == "quad8"
 
 
-def _extended(values: np.ndarray, nodes: np.ndarray, share: np.ndarray) -> np.ndarray:
+def _extended(values: NDArray[np.float64], nodes: NDArray[np.int64], share: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.concatenate([values, np.einsum("k,ekc->ec", share, values[nodes])])

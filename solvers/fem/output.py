@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ..frame import Arrays, Cells, Frame
 from ..materials import Elastic, Orthotropic
 from .arc import PathFollowing
+from .groups.timed import TimedGroup, has_life
 from .problem import SMALL, Problem
 from .procedures import Vibrations
 
@@ -25,6 +26,7 @@ def is_linear(problem: Problem) -> bool:
         all(isinstance(e.law, Elastic | Orthotropic | None) and e.geometry == SMALL for e in problem.elements)
         and not any(load.follows for load in problem.face_loads)
         and not any(m.incremental for m in problem.motions)
+        and not any(has_life(e) for e in problem.elements)
     )
 
 
@@ -56,6 +58,7 @@ def frame(solver: Solver) -> Frame:
         nodes["velocity"] = velocity[:n, :3]
     nodes["von_mises"] = von_mises(nodes["stress"])
     blocks = []
+    timed = any(has_life(e) for e in p.elements)
     for e, group in zip(p.elements, a.groups, strict=True):
         data: Arrays = dict(group.output())
         count = len(e.ids)
@@ -63,6 +66,8 @@ def frame(solver: Solver) -> Frame:
         thickness = np.zeros(count) if e.thickness is None else np.asarray(e.thickness, dtype=float)
         data["thickness"] = thickness if thickness.ndim == 1 else thickness.mean(axis=1)
         data.setdefault("plastic_strain", np.zeros(count))
+        if timed:
+            data.setdefault("alive", np.ones(count))
         blocks.append(Cells(e.kind, e.nodes, data))
     return Frame(time=solver.time, step=solver.step, particles={}, nodes=nodes, cells=blocks)
 
@@ -87,7 +92,9 @@ def history(solver: Solver, energies: dict[str, float]) -> dict[str, float]:
     momentum = solver.procedure.momentum(solver)
     row |= dict(zip(("momentum_x", "momentum_y", "momentum_z"), momentum.tolist(), strict=True))
     row |= dict.fromkeys(("contact_force_x", "contact_force_y", "contact_force_z"), 0.0)
-    row["active"] = float(sum(len(g.elements.ids) for g in solver.assembly.groups))
+    row["active"] = float(
+        sum(len(g.elements.ids) for g in solver.assembly.groups if not isinstance(g, TimedGroup) or g.living)
+    )
     for k, axis in enumerate("xyz"):
         row[f"load_{axis}"], row[f"reaction_{axis}"] = float(loads[k]), float(reactions[k])
     size = np.linalg.norm(solver.shape.u[:, :3], axis=1)

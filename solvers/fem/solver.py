@@ -16,6 +16,7 @@ from .arc import PathFollowing
 from .assembly import AXES, Assembly, Mechanism
 from .centres import with_centres
 from .equilibrium import NotConverged
+from .groups.timed import has_life
 from .loads import Loads
 from .problem import Problem
 from .procedures import Explicit, Increments, Procedure, Superposition, Vibrations
@@ -68,6 +69,8 @@ class Solver:
 
     def _procedure(self) -> Procedure:
         p = self.problem
+        if any(has_life(e) for e in p.elements) and (p.modes or p.path is not None or p.dynamics is not None):
+            raise ValueError("elements are born and die in statics alone, with loads that are given")
         if p.modes:
             return Vibrations()
         if p.path is not None:
@@ -122,6 +125,13 @@ class Solver:
                 factor = self.loads.factor(m.curve, until) - (self.loads.factor(m.curve, now) if now > 0.0 else 0.0)
             change[m.nodes, m.dofs] += factor * m.values
         return change
+
+    def released(self, shape: Shape, dt: float) -> None:
+        """Before a shape is accepted: what the forces of elements that went had done on the way is lost."""
+        moved = shape.u - self.shape.u
+        there, _ = self.assembly.evaluate(self.shape, self.shape, 0.0, stiff=False)
+        self.damped += 0.5 * float(((self.internal_forces - there) * moved).sum())
+        self.assembly.evaluate(shape, self.shape, dt, stiff=False)
 
     def accept(
         self, shape: Shape, external: Floats, internal: Floats, inertia: Floats | None = None,
