@@ -52,6 +52,16 @@ def straight(x: Floats, nodes: Ints, shift: Floats) -> Floats:
     return out
 
 
+def reversed_edges(n: int) -> tuple[Floats, Floats]:
+    """Places r, s (n + 1, n + 1) in a unit square of the distorted meshes of shells: edges are cut 1 : 2 : .. : n, those
+    opposite the other way round, and straight lines join them."""
+    cut = np.concatenate([[0.0], np.cumsum(np.arange(1.0, n + 1))]) / (n * (n + 1) / 2)
+    below, left = np.meshgrid(cut, 1.0 - cut[::-1], indexing="ij")
+    above, right = np.meshgrid(1.0 - cut[::-1], cut, indexing="ij")
+    r = (below + (above - below) * left) / (1.0 - (above - below) * (right - left))
+    return r, left + (right - left) * r
+
+
 def bricks(nx: int, ny: int, nz: int, size: tuple[float, float, float] = (1, 1, 1)) -> tuple[Floats, Ints, Ints]:
     """Nodes, eight-node hexahedra and the nodes' numbers (nx + 1, ny + 1, nz + 1) of a box."""
     axes = [np.linspace(0, length, n + 1) for length, n in zip(size, (nx, ny, nz), strict=True)]

@@ -1,10 +1,11 @@
 """A nine-node shell of the MITC family at one point: where strains are tied. What it shares with four nodes: `mitc4`.
 
-Membrane and bending strains at every t as in MITC9 (Bucalem & Bathe 1993, Int. J. Numer. Methods Eng. 36): rr from the
-points r = +-1/sqrt(3), s = 0, +-sqrt(3/5), ss from the same with r and s exchanged, so that they are the displacements'
-at the nine Gauss points of a straight-sided element. There rs comes from the four points +-1/sqrt(3), and elements that
-are no parallelograms fail the patch test; here it is the bilinear field with the moments of rs by 1, r, s, rs over the
-area, which are what constant stresses weigh it by. In a parallelogram that is the same field.
+Membrane and bending strains, at every t, are near MITC9's (Bucalem & Bathe 1993, Int. J. Numer. Methods Eng. 36), which
+ties rr at r = +-1/sqrt(3), s = 0, +-sqrt(3/5), ss with r and s exchanged, rs at the four points +-1/sqrt(3). That fails
+the patch test unless elements are parallelograms, and distorted thin ones lock. Here rr is linear along r as there, and
+across it given by the strains along the two edges, s = +-1, which neighbours share, and by its mean, weighed by 1/J as
+constant stresses weigh it: J^2 sigma^rr depends on r alone. rs is the bilinear field with the moments of rs by 1, r, s,
+rs, weighed alike. In a parallelogram that is MITC9's.
 
 Transverse shear, at t = 0, not as there: its six points a strain lock thin distorted plates. As in the plate of Bathe,
 Brezzi & Fortin 1989 (Comput. Struct. 32) rt is spanned by 1 r s rs s^2, st by 1 r s rs r^2, given by the strains along
@@ -37,15 +38,15 @@ _PLACES = np.array(
 _values, _slopes = functions("quad9", _PLACES)
 VALUES = np.ascontiguousarray(_values)
 BY_R, BY_S = np.ascontiguousarray(_slopes[:, :, 0]), np.ascontiguousarray(_slopes[:, :, 1])
-# the tied strains rr, ss, rs, then rt and st, each at nine points and on two edges; where each stands
-PLANE, TIED = 21, 47
-PLACE = np.array([*range(12), *range(12, 21), *range(12, 21), *range(21, 25), *range(12, 21), *range(25, 29)])
-RT = 34  # shears before it are along r, those after it along s
-FIRST = np.array([0, 6, 12, 21, 21])
-COUNT = np.array([6, 6, 9, 26, 26])
+# the tied strains rr, ss, on two edges and inside, rs, then rt and st, inside and on two edges; where each stands
+_INSIDE, _EDGES_R, _EDGES_S = range(12, 21), range(21, 25), range(25, 29)
+PLACE = np.array([*_EDGES_R, *range(6), *_EDGES_S, *range(6, 12), *_INSIDE, *_INSIDE, *_EDGES_R, *_INSIDE, *_EDGES_S])
+RR, SS, PLANE, RT, TIED = 10, 20, 29, 42, 55  # where rr, ss, rs, rt, st end
+FIRST = np.array([0, RR, SS, PLANE, PLANE])
+COUNT = np.array([10, 10, 9, 26, 26])
 _INNER = _PLACES[12:21]
-_gauss, _weight = np.polynomial.legendre.leggauss(3)
-WEIGHT = np.outer(_weight, _weight).ravel()
+GAUSS, LINE_WEIGHT = (np.ascontiguousarray(v) for v in np.polynomial.legendre.leggauss(3))
+WEIGHT = np.outer(LINE_WEIGHT, LINE_WEIGHT).ravel()
 BILINEAR = np.column_stack([np.ones(9), _INNER[:, 0], _INNER[:, 1], _INNER[:, 0] * _INNER[:, 1]])
 
 
@@ -89,35 +90,55 @@ def _line(x, at):
 
 
 @kernel
-def skew_weights(x, d, base):
-    """(4, 9) amounts of 1, r, s, rs in the strain rs of an element, of its first shape, by those at the nine points."""
+def own_weights(x, d, base):
+    """Of an element, by its first shape: (4, 9) amounts of 1, r, s, rs in rs by the strains at the nine points, and
+    (2, 3, 10) amounts of 1 - s^2 in rr (1 - r^2 in ss) on the three Gauss lines by the tied ones."""
     square, right = np.zeros((4, 4)), np.empty((4, 9))
-    cross = np.empty(3)
+    cross, area = np.empty(3), np.empty((3, 3))
     for p in range(9):
         base_at(VALUES[12 + p], BY_R[12 + p], BY_S[12 + p], x, d, base)
         cross[:] = 0.0
         cross_into(base[0], base[1], 1.0, cross)
-        own = WEIGHT[p] / np.sqrt(dot(cross, cross))
+        area[p // 3, p % 3] = np.sqrt(dot(cross, cross))
+        own = WEIGHT[p] / area[p // 3, p % 3]
         for i in range(4):
             right[i, p] = own * BILINEAR[p, i]
             for j in range(4):
                 square[i, j] += right[i, p] * BILINEAR[p, j]
-    return np.linalg.solve(square, right)
+    means = np.zeros((2, 3, 10))
+    for c in range(2):
+        for g in range(3):
+            high, low = 0.5 * (1.0 + GAUSS[g] / TWO), 0.5 * (1.0 - GAUSS[g] / TWO)
+            total = 0.0
+            for k in range(3):
+                y = GAUSS[k]
+                own = LINE_WEIGHT[k] / (area[k, g] if c == 0 else area[g, k])
+                total += own * (1.0 - y * y)
+                for m in range(2):
+                    side = own * (low if m == 0 else high)
+                    means[c, g, m] -= 0.5 * (1.0 - y) * side
+                    means[c, g, 2 + m] -= 0.5 * (1.0 + y) * side
+                    means[c, g, 4 + 2 * k + m] += side
+            for p in range(10):
+                means[c, g, p] /= total
+    return np.linalg.solve(square, right), means
 
 
 @kernel
-def tied_weights(r, s, skew, weights):
-    """What the tied strains give to their component at (r, s): weights (5, 26). skew: of `skew_weights`."""
+def tied_weights(r, s, skew, means, weights):
+    """What the tied strains give to their component at (r, s): weights (5, 26). skew, means: of `own_weights`."""
     for p in range(9):
         weights[2, p] = skew[0, p] + r * skew[1, p] + s * skew[2, p] + r * s * skew[3, p]
     for k in range(2):
-        x, y = (r, s) if k == 0 else (s, r)  # along the two points, along the three
-        high, low = 0.5 * (1.0 + x / TWO), 0.5 * (1.0 - x / TWO)
-        z = y / THREE
-        for m in range(3):
-            own = 0.5 * z * (z - 1.0) if m == 0 else 1.0 - z * z if m == 1 else 0.5 * z * (z + 1.0)
-            weights[k, 2 * m] = low * own
-            weights[k, 2 * m + 1] = high * own
+        x, y = (r, s) if k == 0 else (s, r)  # along the strain, across
+        z = x / THREE
+        for p in range(10):
+            inner = 0.5 * z * (z - 1.0) * means[k, 0, p] + (1.0 - z * z) * means[k, 1, p]
+            weights[k, p] = (1.0 - y * y) * (inner + 0.5 * z * (z + 1.0) * means[k, 2, p])
+        for m in range(2):
+            side = 0.5 * (1.0 - x / TWO) if m == 0 else 0.5 * (1.0 + x / TWO)
+            weights[k, m] += 0.5 * (1.0 - y) * side
+            weights[k, 2 + m] += 0.5 * (1.0 + y) * side
     along_r = (1.0, r, s, r * s, s * s)
     along_s = (1.0, r, s, r * s, r * r)
     for p in range(26):
@@ -130,7 +151,7 @@ def tied_weights(r, s, skew, weights):
 
 @kernel
 def tied_strains(y, d, metric, rows, base):
-    """Half-metrics (3, 47) and their rows (3, 47, 6, 9) at the tying points, by powers 0, 1, 2 of t."""
+    """Half-metrics (3, 55) and their rows (3, 55, 6, 9) at the tying points, by powers 0, 1, 2 of t."""
     rows[:] = 0.0
     metric[:] = 0.0
     cross = np.empty(3)
@@ -139,8 +160,8 @@ def tied_strains(y, d, metric, rows, base):
         values, by_r, by_s = VALUES[at], BY_R[at], BY_S[at]
         base_at(values, by_r, by_s, y, d, base)
         if p < PLANE:
-            a = 0 if p < 6 or p >= 12 else 1
-            b = 0 if p < 6 else 1
+            a = 0 if p < RR or p >= SS else 1
+            b = 0 if p < RR else 1
             metric[0, p] = 0.5 * dot(base[a], base[b])
             metric[1, p] = 0.5 * (dot(base[a], base[2 + b]) + dot(base[2 + a], base[b]))
             metric[2, p] = 0.5 * dot(base[2 + a], base[2 + b])
@@ -170,7 +191,7 @@ def tied_strains(y, d, metric, rows, base):
 
 @kernel
 def of_step(rows, step, change):
-    """Changes (3, 47) of the tied strains by a small motion (9, 6)."""
+    """Changes (3, 55) of the tied strains by a small motion (9, 6)."""
     for j in range(3):
         for p in range(TIED):
             total = 0.0
@@ -182,7 +203,7 @@ def of_step(rows, step, change):
 
 @kernel
 def strains_at(t, weights, tied, out):
-    """Covariant strains (5,) at a point of the tied ones (3, 47)."""
+    """Covariant strains (5,) at a point of the tied ones (3, 55)."""
     for k in range(5):
         total = 0.0
         for m in range(COUNT[k]):

@@ -6,21 +6,21 @@ import numpy as np
 
 from ...jit import kernel
 from .mitc4 import base_at, dot
-from .mitc9 import BY_R, BY_S, PLACE, PLANE, RT, TIED, VALUES
+from .mitc9 import BY_R, BY_S, PLACE, PLANE, RR, RT, SS, TIED, VALUES
 from .shell_geometry import of_shift_and_turn, of_turn
 
 
 @kernel
 def tied_geometry(pulled, y, d, base, matrix, q):
-    """Add it for what the stresses do to the tied strains, (3, 47) by powers of t."""
+    """Add it for what the stresses do to the tied strains, (3, 55) by powers of t."""
     push = np.empty(3)
     for p in range(TIED):
         at = PLACE[p]
         values, by_r, by_s = VALUES[at], BY_R[at], BY_S[at]
         base_at(values, by_r, by_s, y, d, base)
         if p < PLANE:
-            a = 0 if p < 6 or p >= 12 else 1
-            b = 0 if p < 6 else 1
+            a = 0 if p < RR or p >= SS else 1
+            b = 0 if p < RR else 1
             flat, once, twice = pulled[0, p], pulled[1, p], pulled[2, p]
             for i in range(9):
                 ia = by_r[i] if a == 0 else by_s[i]

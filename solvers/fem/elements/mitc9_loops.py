@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...jit import kernel
 from . import shapes
 from .mitc4 import base_at, cross_into, dot, drilling, frame_at, to_local
-from .mitc9 import COUNT, FIRST, TIED, blend, of_step, shape_at, skew_weights, strains_at, tied_strains, tied_weights
+from .mitc9 import COUNT, FIRST, TIED, blend, of_step, own_weights, shape_at, strains_at, tied_strains, tied_weights
 from .mitc9_geometry import tied_geometry
 from .shell_gather import gather, gather_reference
 
@@ -44,10 +44,10 @@ def strains(
             tied_strains(reference, thick, first, tied, base)
             of_step(tied, step, metric)
         convex[q] = True
-        skew = skew_weights(reference, thick, base)
+        skew, means = own_weights(reference, thick, base)
         for g in range(len(points)):
             r, s = points[g, 0], points[g, 1]
-            tied_weights(r, s, skew, weights)
+            tied_weights(r, s, skew, means, weights)
             shape_at(r, s, values, by_r, by_s)
             base_at(values, by_r, by_s, reference, thick, base)
             for l in range(len(layers)):
@@ -88,14 +88,14 @@ def integrate(
     for q in range(nodes.shape[0]):
         gather(nodes, q, x, u, corner, directors, half, turn, reference, thick, now, moved, turns, finite)
         tied_strains(now, corner, metric, tied, base)
-        skew = skew_weights(reference, thick, base)
+        skew, means = own_weights(reference, thick, base)
         inner[:] = 0.0
         push[:] = 0.0
         drilled[q] = 0.0
         pulled[:] = 0.0
         for g in range(len(points)):
             r, s = points[g, 0], points[g, 1]
-            tied_weights(r, s, skew, weights)
+            tied_weights(r, s, skew, means, weights)
             blend(weights, tied, blended)
             shape_at(r, s, values, by_r, by_s)
             base_at(values, by_r, by_s, reference, thick, base)

@@ -7,7 +7,22 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fem_meshes import eight, group, held, line_load, loaded, moved, nine, problem, quads, ramp, shell, solve, straight
+from fem_meshes import (
+    eight,
+    group,
+    held,
+    line_load,
+    loaded,
+    moved,
+    nine,
+    problem,
+    quads,
+    ramp,
+    reversed_edges,
+    shell,
+    solve,
+    straight,
+)
 
 from zrno.pipelines.build_fem import structure_problem
 from zrno.solvers import fem
@@ -138,27 +153,35 @@ def test_scordelis_lo_roof(kind: str, share: float) -> None:
     assert shown.cells[0].nodes.shape[1] == int(kind[-1])
 
 
-@pytest.mark.parametrize(("thickness", "n", "share"), [(0.04, 8, 0.991), (0.004, 4, 0.975), (0.004, 8, 0.974)])
-def test_pinched_hemisphere(thickness: float, n: int, share: float) -> None:
-    """MITC4+ is at 0.990 with 16 x 16 and at 0.971 for the thin one with 32 x 32."""
+@pytest.mark.parametrize(
+    ("thickness", "n", "distorted", "share"),
+    [(0.04, 8, False, 0.991), (0.004, 8, False, 0.974), (0.04, 8, True, 0.991), (0.004, 8, True, 0.958)],
+)
+def test_pinched_hemisphere(thickness: float, n: int, *, distorted: bool, share: float) -> None:
+    """MITC4+ on meshes twice as fine: 0.990, 0.973; distorted 0.991, 0.976. The strains of MITC9: the last one 0.65."""
     top = 0.5 * np.pi - math.radians(18)
 
     def place(r: np.ndarray, s: np.ndarray) -> np.ndarray:
         turn, up = 0.5 * np.pi * r, top * s
         return 10 * np.stack([np.cos(up) * np.cos(turn), np.cos(up) * np.sin(turn), np.sin(up)], -1)
 
-    x, nodes, number = nine(n, n, place)
+    x, nodes, number = nine(n, n, _flat)
+    if distorted:
+        shift = np.zeros_like(x)
+        shift[number[::2, ::2], :2] = np.stack(reversed_edges(n), -1) - x[number[::2, ::2], :2]
+        x = straight(x, nodes, shift)
+    x = place(x[:, 0], x[:, 1])
     fixed = held(len(x), (number[0], "yac"), (number[-1], "xbc"), (number[0, 0], "z"))
     elements = shell(nodes, thickness, Elastic.from_engineering(6.825e7, 0.3))
     loads = (loaded(number[0, 0], 0, 1.0), loaded(number[-1, 0], 1, -1.0))
     solver, _ = solve(problem(x, elements, fixed, nodal_loads=loads))
     reference = 0.0940 * (0.04 / thickness) ** 3
-    assert moved(solver, number[0, 0], 0) / reference == pytest.approx(share, abs=0.006)
+    assert moved(solver, number[0, 0], 0) / reference == pytest.approx(share, abs=0.002)
 
 
 @pytest.mark.parametrize("n", [4, 8])
 def test_a_thin_distorted_plate_does_not_lock(n: int) -> None:
-    """Thickness over length 1e-4, clamped; nine-node shells with the shear of MITC9 are at 0.64 and 0.96 here."""
+    """Thickness over length 1e-4, clamped; with the shear strains of MITC9 it is at 0.64 and 0.96."""
     x, nodes, number = _distorted(n, 0.5)
     fixed = held(len(x), (slice(None), "c"), (number[0], "xb"), (number[:, 0], "ya"),
                  (np.concatenate([number[-1], number[:, -1]]), "xyzab"))  # fmt: skip
@@ -172,7 +195,7 @@ def test_deflection_converges_with_the_third_order() -> None:
     """A thin plate, simply supported, under q sin sin: w = q / (4 pi^4 D) of Kirchhoff, with Mindlin's shear added.
 
     Smoothly distorted meshes; regular ones are of the fourth order at the nodes, and ones whose elements stay as skew
-    as they are, however small (30 % at random), of order 2.3: as with all mixed shells of this kind.
+    as they are, however small (30 % at random), of the second: as with all mixed shells of this kind.
     """
     h, young, nu = 0.01, 2.1e5, 0.3
     rigidity = young * h**3 / (12 * (1 - nu**2))
