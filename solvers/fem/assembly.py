@@ -200,13 +200,15 @@ class Assembly:
 
     def mechanism(self, error: linear.Singular) -> Mechanism:
         """What a singular matrix means: where and along what the structure can move."""
-        place = error.equation
+        place, cause = error.equation, "the structure can move without resistance"
+        if place < 0:
+            cause += f", or its stiffnesses lie so far apart that numbers run out of digits ({error}): least of all"
         if place < 0 and len(self.system.values):
             place = self._softest()
         if self.transform is not None or not 0 <= place < len(self.where):
             return Mechanism(-1, 0, f"the structure can move without resistance ({error})")
         node, dof = divmod(int(self.where[place]), 6)
-        return Mechanism(node, dof, "the structure can move without resistance")
+        return Mechanism(node, dof, cause)
 
     def _softest(self) -> int:
         """The equation with the smallest diagonal: a node that hangs loose."""

@@ -53,8 +53,8 @@ def straight(x: Floats, nodes: Ints, shift: Floats) -> Floats:
 
 
 def reversed_edges(n: int) -> tuple[Floats, Floats]:
-    """Places r, s (n + 1, n + 1) in a unit square of the distorted meshes of shells: edges are cut 1 : 2 : .. : n, those
-    opposite the other way round, and straight lines join them."""
+    """Places r, s (n + 1, n + 1) in a unit square of Ko, Lee & Bathe's distorted meshes: edges are cut 1 : 2 : .. : n,
+    those opposite the other way round, and straight lines join them."""
     cut = np.concatenate([[0.0], np.cumsum(np.arange(1.0, n + 1))]) / (n * (n + 1) / 2)
     below, left = np.meshgrid(cut, 1.0 - cut[::-1], indexing="ij")
     above, right = np.meshgrid(1.0 - cut[::-1], cut, indexing="ij")
