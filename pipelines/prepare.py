@@ -13,6 +13,7 @@ from zrno.pipelines import options as command_options
 from zrno.pipelines import scene as scenes
 from zrno.pipelines.checkpoint import load_latest
 from zrno.pipelines.drafts import Draft, drafts
+from zrno.pipelines.fem_method import Fem
 from zrno.pipelines.fem_method import of_options as fem_of_options
 from zrno.pipelines.manifest import digests
 from zrno.pipelines.method import of_options
@@ -32,7 +33,7 @@ class Prepared:
     """A run that can begin. deck: at its place, its SHA-256 in digest; made: what `convert` returns of each deck made.
 
     state: the checkpoint that the solver stands at, None at the start; started: when the deck had been read
-    (`time.perf_counter`).
+    (`time.perf_counter`); listing: whether a structure's steps are listed as text.
     """
 
     scene: Scene | None
@@ -43,6 +44,7 @@ class Prepared:
     solver: sph.Solver | fem.Solver
     state: Mapping[str, Any] | None
     started: float
+    listing: bool
 
 
 def prepare(
@@ -91,7 +93,8 @@ def prepare(
         directory.mkdir(parents=True, exist_ok=True)
         for draft in made:
             draft.publish()
-        return Prepared(scene, deck, digest, model, [d.result for d in made], solver, state, started)
+        return Prepared(scene, deck, digest, model, [d.result for d in made], solver, state, started,
+                        model.fem_control is not None and _of_structure(scene, chosen).listing)  # fmt: skip
 
 
 def _solver(
@@ -107,8 +110,7 @@ def _solver(
         from zrno.pipelines.build_fem import structure_problem
         from zrno.solvers import fem
 
-        of_structure = scene.fem if scene else fem_of_options(_section(chosen, "fem"))
-        problem = structure_problem(model, str(deck), of_structure)
+        problem = structure_problem(model, str(deck), _of_structure(scene, chosen))
         try:
             return fem.Solver(problem, threads=threads)
         except fem.Bad as error:
@@ -123,6 +125,10 @@ def _solver(
     original = chosen.run.get("compat") == "original"
     particles = particle_problem(model, str(deck), places=places, original=original, method=method)
     return sph.Solver(particles, threads=threads)
+
+
+def _of_structure(scene: Scene | None, chosen: command_options.Options) -> Fem:
+    return scene.fem if scene else fem_of_options(_section(chosen, "fem"))
 
 
 def _section(chosen: command_options.Options, name: str) -> dict[str, Any]:
