@@ -16,7 +16,7 @@ from fem_meshes import bricks, eight, group, held, line_load, loaded, moved, nin
 from zrno.solvers import fem
 from zrno.solvers.errors import Diverged
 from zrno.solvers.fem import linear
-from zrno.solvers.materials import Elastic
+from zrno.solvers.materials import Elastic, von_mises
 
 LENGTH = 10.0
 LAW = Elastic.from_engineering(1000.0, 0.3)
@@ -111,3 +111,19 @@ def test_soft_on_stiff(below: float, method: str) -> None:
     solver, _ = solve(problem(x, parts, held(len(x), (number[:, :, 0], "xyz")), face_loads=(press,), solver=method))
     assert moved(solver, top[1, 1], 2) == pytest.approx(-0.5 / below - 0.5 / above, rel=1e-7)
     assert moved(solver, number[1, 1, 4], 2) == pytest.approx(-0.5 / below, rel=1e-7)
+
+
+def test_more_than_a_collapse_load_is_an_error_with_its_place() -> None:
+    """A perfectly plastic bar, yield 5 and area 2, pulled to 12: at 10 it flows, and nothing balances more."""
+    x = np.array([[0.0, 0, 0], [10.0, 0, 0]])
+    bar = group("line2", "truss", np.array([[0, 1]]), von_mises(1000.0, 0.3, 5.0), section={"area": 2.0})
+    ramp = fem.Curve(np.array([0.0, 12.0]), np.array([0.0, 12.0]))
+    p = problem(x, bar, held(2, ([0], "xyz"), ([1], "yz")), nodal_loads=(loaded(1, 0, 1.0, 0),), curves=(ramp,),
+                steps=((4, 3.0),))  # fmt: skip
+    solver = fem.Solver(p)
+    for _ in range(3):
+        solver.advance(np.inf, 1)
+    assert moved(solver, 1, 0) == pytest.approx(9.0 * 10.0 / (1000.0 * 2.0))
+    with pytest.raises(Diverged, match="at node 2 along ux"):
+        solver.advance(np.inf, 1)
+    assert solver.time == 9.0
