@@ -219,14 +219,14 @@ def test_a_cantilever_under_shear_follows_szes_curve(shared: Path) -> None:
     x, nodes, number = nine(4, 1, lambda r, s: np.stack([10 * r, s, 0 * r], -1))
     elements = shell(nodes, 0.1, Elastic.from_engineering(1.2e6, 0.0), geometry="total")
     p = problem(x, elements, held(len(x), (number[0], "xyzabc")), nodal_loads=(line_load(number[-1], 2, 4.0, 0),),
-                curves=(ramp(),), steps=((5, 0.2),))  # fmt: skip
+                curves=(ramp(),), steps=((25, 0.04),))  # fmt: skip
     tip = number[-1, 0]
     solver, seen = solve(p, lambda s: (-moved(s, tip, 0), moved(s, tip, 2)))
     rows = np.loadtxt(shared / "reference/fem/sze31_cantilever_shear.csv", delimiter=",", comments="#", skiprows=2)
-    for (u, w), load in zip(seen, np.arange(1, 6) / 5, strict=True):
+    for (u, w), load in zip(seen[4::5], np.arange(1, 6) / 5, strict=True):
         row = rows[np.isclose(rows[:, 0], load)][0]
         assert (u, w) == pytest.approx((row[1], row[2]), rel=0.01)
-    assert solver.energy_report()["balance_error"] < 1e-3
+    assert solver.energy_report()["balance_error"] < 1e-3  # of the trapezoidal rule, second order: 1.6 % in 5 steps
 
 
 def test_eight_and_four_node_shells_meet_in_vibration() -> None:
