@@ -20,6 +20,7 @@ from zrno.translators.text import Fault, InputError
 _GEOMETRY = {0: fem.SMALL, 1: fem.SMALL, 2: fem.TOTAL, 3: fem.UPDATED, 4: fem.UPDATED, 5: fem.UPDATED}
 _MODES = {"hex8": 12, "quad4": 4}  # enhanced strains where a deck asks for incompatible modes
 _FACES = {3: "tri3", 4: "quad4", 6: "tri6", 8: "quad8", 9: "quad9"}
+_SHELLS = ("tri3", "quad4", "quad8", "quad9")
 _COMPUTED = ("solid", "plane", "truss", "beam", "shell", "spring", "mass")
 
 
@@ -94,14 +95,15 @@ def refusals(model: Model, path: str) -> list[Fault]:
             structural_law_of(material, model.curves, None if section is None else _axes(section))
         except (Unsupported, ValueError) as error:
             faults.append(Fault(path, at, 1, f"material {material.id}: {error}", "", "a law that is computed"))
+    moving = control.dynamic or control.eigenvalues or control.iteration >= 60
     for block in model.blocks:
         timed = [name for name in ("birth", "death") if np.any(block.data.get(name, 0.0))]
-        if timed:
-            said = f"{' and '.join(timed)} of {block.kind} elements"
-            faults.append(Fault(path, 1, 1, f"{said} is not computed yet", "", "elements that are there all the time"))
-        if block.family == "shell" and block.kind not in ("tri3", "quad4"):
+        if timed and moving:
+            said = f"{' and '.join(timed)} of {block.kind} elements in motion, vibration or on a path that is found"
+            faults.append(Fault(path, 1, 1, f"{said} is not computed", "", "statics with loads that are given"))
+        if block.family == "shell" and block.kind not in _SHELLS:
             message = f"shells of the kind {block.kind} are not computed yet"
-            faults.append(Fault(path, 1, 1, message, "", "three or four nodes"))
+            faults.append(Fault(path, 1, 1, message, "", "three, four, eight or nine nodes"))
     for load in model.nodal_loads:
         if load.kind == "temperature":
             at = load.source.line if load.source else 1
@@ -126,9 +128,22 @@ def _elements(model: Model, method: Fem) -> list[fem.Elements]:
     found = []
     for block in model.blocks:
         for part in np.unique(block.part).tolist():
-            rows = block.part == part
             if block.kind in TABLE and model.parts[part].section is not None:
-                found.append(_group(model, block, rows, part, method))
+                found += [_group(model, block, rows, part, method) for rows in _lives(block, block.part == part)]
+    return found
+
+
+def _lives(block: ElementBlock, rows: Any) -> list[Any]:
+    """Elements (rows: a mask) by their times of birth and death."""
+    times = np.column_stack([block.data.get(name, np.zeros(len(block.ids))) for name in ("birth", "death")])
+    own, which = np.unique(times[rows], axis=0, return_inverse=True)
+    if len(own) < 2:
+        return [rows]
+    found = []
+    for k in range(len(own)):
+        some = np.zeros(len(rows), bool)
+        some[np.flatnonzero(rows)[which.ravel() == k]] = True
+        found.append(some)
     return found
 
 
@@ -149,6 +164,8 @@ def _group(model: Model, block: ElementBlock, rows: Any, part: int, method: Fem)
     if thickness is None and "thickness" in parameters:
         thickness = np.full(len(ids), parameters["thickness"])
     nodes = block.nodes[rows]
+    if family == "shell" and block.kind in ("quad8", "quad9") and not {*gauss[:2]} <= {0, 3}:
+        model.warnings.append(f"{len(ids)} {block.kind} shells: 3 x 3 points in the plane, not NGAUS of the deck")
     if family == "plane":
         nodes = _counter_clockwise(model, block.kind, nodes)
     return fem.Elements(

@@ -27,9 +27,10 @@ class Fem(Section):
 
     solver: of the linear systems (auto: the best that is installed); enhanced: incompatible modes of hexahedra,
     quadrilaterals and four-node shells; dilatation: the mean of an element, against locking in plastic flow; geometry:
-    of all groups; iteration: newton factors in each iteration, adaptive where the last one was slow, modified once a
-    step; search: line search; tolerance: residual force over the largest
-    force; most: iterations of a step; cuts: how often a step is halved; steps: number of equal steps to the deck's end.
+    of all groups; iteration: newton factors in each iteration, adaptive where the last one was slow or shells turn far,
+    modified once a step; search: line search; tolerance: residual force over the largest force; most: iterations of a
+    step; cuts: how often a step is halved; steps: number of equal steps to the deck's end; listing: whether
+    displacements, reactions and stresses of each step are also written as text, `listing.lst`.
     """
 
     solver: Literal["auto", "pardiso", "cholmod", "scipy", "multigrid"] = "auto"
@@ -42,6 +43,7 @@ class Fem(Section):
     most: Count | None = None
     cuts: Annotated[int, Field(ge=0, le=30)] = 8
     steps: Count | None = None
+    listing: bool = False
     path: PathOfLoading | None = None
 
 

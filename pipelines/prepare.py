@@ -15,6 +15,7 @@ from zrno.pipelines.checkpoint import load_latest
 from zrno.pipelines.coupling_method import Coupling
 from zrno.pipelines.coupling_method import of_options as coupling_of_options
 from zrno.pipelines.drafts import Draft, drafts
+from zrno.pipelines.fem_method import Fem
 from zrno.pipelines.fem_method import of_options as fem_of_options
 from zrno.pipelines.manifest import digests
 from zrno.pipelines.method import of_options
@@ -39,7 +40,7 @@ class Prepared:
     made: what `convert` returns of each deck made.
 
     state: the checkpoint that the solver stands at, None at the start; started: when the deck had been read
-    (`time.perf_counter`).
+    (`time.perf_counter`); listing: whether a structure's steps are listed as text.
     """
 
     scene: Scene | None
@@ -50,6 +51,7 @@ class Prepared:
     solver: Solver
     state: Mapping[str, Any] | None
     started: float
+    listing: bool
 
 
 def prepare(
@@ -101,7 +103,9 @@ def prepare(
         directory.mkdir(parents=True, exist_ok=True)
         for draft in made:
             draft.publish()
-        return Prepared(scene, decks, digest, models, [d.result for d in made], solver, state, started)
+        listed = models[-1].fem_control is not None and _of_structure(scene, chosen).listing
+        made_of = [d.result for d in made]
+        return Prepared(scene, decks, digest, models, made_of, solver, state, started, listed)
 
 
 def _solver(
@@ -114,7 +118,7 @@ def _solver(
 ) -> Solver:
     """The solver of a deck: finite elements of a .dat, particles of an .mcm, both together of a pair."""
     original = chosen.run.get("compat") == "original"
-    of_structure = scene.fem if scene else fem_of_options(_section(chosen, "fem"))
+    of_structure = _of_structure(scene, chosen)
     of_particles = scene.sph if scene else of_options(_section(chosen, "sph"))
     if len(models) == 2:
         from zrno.pipelines.build_coupled import coupled_problem
@@ -151,6 +155,10 @@ def _structure(problem: fem.Problem, model: Model, deck: Path, threads: int | No
     except fem.Mechanism as error:
         number = int(model.node_ids[error.node])
         raise InputError([Fault(str(deck), 1, 1, f"node {number}: {error}")]) from error
+
+
+def _of_structure(scene: Scene | None, chosen: command_options.Options) -> Fem:
+    return scene.fem if scene else fem_of_options(_section(chosen, "fem"))
 
 
 def _section(chosen: command_options.Options, name: str) -> dict[str, Any]:

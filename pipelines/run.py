@@ -17,6 +17,7 @@ from zrno.pipelines.convert import losses
 from zrno.pipelines.errors import Missing, RunFailed
 from zrno.pipelines.history import History
 from zrno.pipelines.interrupt import held_back
+from zrno.pipelines.listing import Listing
 from zrno.pipelines.manifest import Manifest, digests
 from zrno.pipelines.prepare import prepare
 from zrno.pipelines.progress import Progress
@@ -87,6 +88,8 @@ def run(
     bar = Progress(end, show=progress)
     balance = Balance(interval=history.interval, step_factor=getattr(solver.problem, "step_factor", None))
     watchers: list[Observer] = [series, history, checkpointer, balance, bar]
+    if ready.listing:
+        watchers.append(Listing(directory, model.title, resume=state is not None))
     result: dict[str, Any] = {}
     with _log_file(directory, append=state is not None):
         manifest = Manifest(

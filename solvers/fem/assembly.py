@@ -11,6 +11,7 @@ from . import linear, structure
 from .elements.points import elastic_modulus
 from .groups import make_groups
 from .groups.group import Sink
+from .groups.timed import TimedGroup
 from .problem import SMALL, Problem
 from .shape import Shape
 
@@ -72,6 +73,8 @@ class Assembly:
         self.where = np.flatnonzero(self.free.ravel())
         self.transform = self._relations() if problem.relations else None
         self._moment_places = self._places_of_moments()
+        self._timed = [g for g in self.groups if isinstance(g, TimedGroup)]
+        self.idle = self._idle()
         self.system = self._system(self.structure.starts, self.structure.columns)
 
     def _system(self, starts: NDArray[np.int32], columns: NDArray[np.int32]) -> linear.System:
@@ -83,6 +86,25 @@ class Assembly:
     def equations(self) -> int:
         """Unknowns."""
         return self.structure.count if self.transform is None else self.transform.shape[1]
+
+    # elements that come and go
+
+    def at(self, time: float, shape: Shape) -> bool:
+        """Before a step from a shape that ends at a time. Returns whether elements came or went."""
+        changed = [group.at(time, shape) for group in self._timed]
+        if any(changed):
+            self.idle = self._idle()
+        return any(changed)
+
+    def _idle(self) -> NDArray[np.bool_]:
+        """(n, 6) the degrees of freedom none of whose elements is there: they stay where they are."""
+        if not self._timed:
+            return np.zeros((self.n, 6), bool)
+        used = np.zeros((self.n, 6), bool)
+        for group in self.groups:
+            if not isinstance(group, TimedGroup) or group.living:
+                used[np.ix_(np.unique(group.elements.nodes), group.dofs)] = True
+        return self.free & ~used
 
     # vectors
 
@@ -116,6 +138,8 @@ class Assembly:
             turning = 0.5 * np.array([[zero, z, -y], [-z, zero, x], [y, -x, zero]]).transpose(2, 0, 1)
             kept = self._moment_places >= 0
             values[self._moment_places[kept]] += turning[kept]
+        if values is not None and self.idle.any():
+            values += self.diagonal_values(np.where(self.idle, self.stiffness, 0.0))
         return sink.forces, sink.of_motion
 
     def _places_of_moments(self) -> NDArray[np.int64]:
@@ -177,13 +201,15 @@ class Assembly:
 
     def mechanism(self, error: linear.Singular) -> Mechanism:
         """What a singular matrix means: where and along what the structure can move."""
-        place = error.equation
+        place, cause = error.equation, "the structure can move without resistance"
+        if place < 0:
+            cause += f", or its stiffnesses lie so far apart that numbers run out of digits ({error}): least of all"
         if place < 0 and len(self.system.values):
             place = self._softest()
         if self.transform is not None or not 0 <= place < len(self.where):
             return Mechanism(-1, 0, f"the structure can move without resistance ({error})")
         node, dof = divmod(int(self.where[place]), 6)
-        return Mechanism(node, dof, "the structure can move without resistance")
+        return Mechanism(node, dof, cause)
 
     def _softest(self) -> int:
         """The equation with the smallest diagonal: a node that hangs loose."""

@@ -78,6 +78,7 @@ def equilibrium(
     if guess is not None:
         stale = not assembly.system.factored or _share(residual, loads, internal, largest) > FAST
     first_energy, before = 0.0, math.inf
+    turns = start.turn is not None  # old factors of a thin shell that turns stretch it: they lead away
     for iteration in range(how.most if guess is None else min(how.most, GUESSED)):
         if stale:
             if iteration or guess is not None:
@@ -110,7 +111,7 @@ def equilibrium(
         if round_off or _converged(how, size, energy, first_energy, step, shape, start):
             return shape, internal, trace
         slow = size > FAST * before
-        stale = not keep and (how.method == "newton" or (how.method == "adaptive" and slow))
+        stale = not keep and (how.method == "newton" or (how.method == "adaptive" and (slow or turns)))
         before = size
     worst = divmod(int(assembly.where[int(np.argmax(np.abs(residual)))]), 6) if assembly.transform is None else None
     count, last = len(trace.residuals), trace.residuals[-1]

@@ -95,6 +95,7 @@ class System:
 
     def factor(self, kind: str | None = None) -> None:
         """Factor the values that now stand; raises Singular. kind: as what, where that changes."""
+        self.factored = False  # until it has worked: a step that is halved begins with these factors
         if not np.isfinite(self.values.sum()):  # PARDISO's memory does not survive it
             raise Singular(-1, "the matrix is not finite")
         if kind is not None and kind != self.kind:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from .elements import shapes
 from .groups.group import Group
+from .groups.timed import TimedGroup
 from .problem import FaceLoad, Problem
 
 Floats = NDArray[np.float64]
@@ -20,6 +21,7 @@ class Loads:
     def __init__(self, problem: Problem, groups: Sequence[Group]) -> None:
         self.problem = problem
         self.contact: Floats | None = None  # (n, 6) forces of what touches the structure, in this step
+        self._timed: list[tuple[TimedGroup, int | None, Floats]] = []  # weight of elements that come and go
         self._patterns: dict[tuple[int | None, float], Floats] = {}
         self.followers = tuple(load for load in problem.face_loads if load.follows and load.direction == 0)
         radius = _radii(problem)
@@ -33,7 +35,11 @@ class Loads:
         for body in problem.body_loads:
             for group in groups:
                 if body.materials is None or group.elements.material in body.materials:
-                    self._pattern(body.curve)[:, :3] += group.weights() * body.acceleration
+                    own = group.weights() * body.acceleration
+                    if isinstance(group, TimedGroup):
+                        self._timed.append((group, body.curve, own))
+                    else:
+                        self._pattern(body.curve)[:, :3] += own
 
     def _pattern(self, curve: int | None, shift: float = 0.0) -> Floats:
         n = len(self.problem.x)
@@ -52,6 +58,9 @@ class Loads:
         total = np.zeros((len(self.problem.x), 6)) if self.contact is None else self.contact.copy()
         for (curve, shift), values in self._patterns.items():
             total += self.factor(curve, time + shift) * values
+        for group, curve, weight in self._timed:
+            if group.lives(time):
+                total[:, :3] += self.factor(curve, time) * weight
         for face in self.followers:
             factor = self.factor(face.curve, time)
             if factor:

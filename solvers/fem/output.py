@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ..frame import Arrays, Cells, Frame
 from ..materials import Elastic, Orthotropic
 from .arc import PathFollowing
+from .groups.timed import TimedGroup, has_life
 from .problem import SMALL, Problem
 from .procedures import Vibrations
 
@@ -25,6 +26,7 @@ def is_linear(problem: Problem) -> bool:
         all(isinstance(e.law, Elastic | Orthotropic | None) and e.geometry == SMALL for e in problem.elements)
         and not any(load.follows for load in problem.face_loads)
         and not any(m.incremental for m in problem.motions)
+        and not any(has_life(e) for e in problem.elements)
     )
 
 
@@ -38,31 +40,34 @@ def von_mises(stress: Floats) -> Floats:
 
 def frame(solver: Solver) -> Frame:
     """Nodes and elements of a solver, in the order of the deck."""
-    p, a = solver.problem, solver.assembly
-    u = solver.shape.u
+    p, a = solver.given, solver.assembly
+    n = len(p.x)
+    u = solver.shape.u[:n]
     nodes: Arrays = {
         "position": p.x + u[:, :3],
         "id": p.node_ids,
         "displacement": u[:, :3],
-        "reaction": solver.reaction[:, :3],
-        "stress": _nodal_stress(solver),
+        "reaction": solver.reaction[:n, :3],
+        "stress": _nodal_stress(solver)[:n],
     }
     if any(g.dofs.max(initial=0) > 2 for g in a.groups):
         nodes["rotation"] = u[:, 3:]
-        nodes["moment"] = solver.reaction[:, 3:]
+        nodes["moment"] = solver.reaction[:n, 3:]
     velocity = solver.procedure.velocity(solver)
     if velocity is not None:
-        nodes["velocity"] = velocity[:, :3]
+        nodes["velocity"] = velocity[:n, :3]
     nodes["von_mises"] = von_mises(nodes["stress"])
     blocks = []
-    for group in a.groups:
-        e = group.elements
+    timed = any(has_life(e) for e in p.elements)
+    for e, group in zip(p.elements, a.groups, strict=True):
         data: Arrays = dict(group.output())
         count = len(e.ids)
         data |= {"id": e.ids, "material": np.full(count, e.material), "von_mises": von_mises(data["stress"])}
         thickness = np.zeros(count) if e.thickness is None else np.asarray(e.thickness, dtype=float)
         data["thickness"] = thickness if thickness.ndim == 1 else thickness.mean(axis=1)
         data.setdefault("plastic_strain", np.zeros(count))
+        if timed:
+            data.setdefault("alive", np.ones(count))
         blocks.append(Cells(e.kind, e.nodes, data))
     return Frame(time=solver.time, step=solver.step, particles={}, nodes=nodes, cells=blocks)
 
@@ -87,7 +92,9 @@ def history(solver: Solver, energies: dict[str, float]) -> dict[str, float]:
     momentum = solver.procedure.momentum(solver)
     row |= dict(zip(("momentum_x", "momentum_y", "momentum_z"), momentum.tolist(), strict=True))
     row |= dict.fromkeys(("contact_force_x", "contact_force_y", "contact_force_z"), 0.0)
-    row["active"] = float(sum(len(g.elements.ids) for g in solver.assembly.groups))
+    row["active"] = float(
+        sum(len(g.elements.ids) for g in solver.assembly.groups if not isinstance(g, TimedGroup) or g.living)
+    )
     for k, axis in enumerate("xyz"):
         row[f"load_{axis}"], row[f"reaction_{axis}"] = float(loads[k]), float(reactions[k])
     size = np.linalg.norm(solver.shape.u[:, :3], axis=1)

@@ -147,9 +147,9 @@ class Iteration:
     """How equilibrium is found.
 
     method: "newton" (factors in each iteration), "adaptive" (where the last one did not leave less than a tenth of the
-    residual) or "modified" (of the step's start alone); search: line search; most: iterations;
-    energy, force, displacement: relative tolerances, 0 not asked; cuts: how often a step is halved that does not
-    converge.
+    residual, and in each where nodes turn) or "modified" (of the step's start alone); search: line search; most:
+    iterations; energy, force, displacement: relative tolerances, 0 not asked; cuts: how often a step is halved that
+    does not converge.
     """
 
     method: str = "adaptive"

@@ -193,6 +193,11 @@ class Increments(Still):
     def _part(self, solver: Solver, now: float, until: float, end: float) -> None:
         dt, mover = until - now, self.mover
         change = solver.prescribed(now, until, end)
+        changed = solver.assembly.at(until, solver.shape)
+        if changed:
+            self._before = None
+        if solver.assembly.idle.any():
+            self._loose(solver, until)
         if mover is None:
             target = Target(change, lambda s: solver.loads.at(until, s.u))
         else:
@@ -220,6 +225,8 @@ class Increments(Still):
         solver.iterations += len(trace.residuals)
         log.debug("t = %g: residuals %s", until, " ".join(f"{r:.1e}" for r in trace.residuals))
         if mover is None:
+            if changed:
+                solver.released(shape, dt)
             solver.accept(shape, solver.loads.at(until, shape.u), internal)
             return
         if mover.theta != 1.0:
@@ -231,6 +238,13 @@ class Increments(Still):
             mover.finish(shape.u - solver.shape.u, external - internal, dt)
         solver.accept(shape, external, internal, mover.inertia(mover.acceleration), mover.damping(mover.velocity),
                       duration=dt)  # fmt: skip
+
+    def _loose(self, solver: Solver, until: float) -> None:
+        """Raise Mechanism where a load acts on a node whose elements are not there."""
+        loose = solver.assembly.idle & (solver.loads.at(until, solver.shape.u) != 0.0)
+        if loose.any():
+            node, dof = np.argwhere(loose)[0].tolist()
+            raise Mechanism(node, dof, "a load acts where no element is there yet or any more")
 
     def _guess(self, change: Floats, dt: float) -> Floats | None:
         """The last step's change once more, where the motion that is prescribed goes on as it went; None elsewhere."""

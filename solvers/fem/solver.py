@@ -14,7 +14,9 @@ from ..frame import Frame
 from . import output
 from .arc import PathFollowing
 from .assembly import AXES, Assembly, Mechanism
+from .centres import with_centres
 from .equilibrium import NotConverged
+from .groups.timed import has_life
 from .guided import Guided
 from .loads import Loads
 from .problem import Problem
@@ -29,12 +31,14 @@ _KEPT = ("reaction", "internal_forces", "external_forces")
 class Solver:
     """A structure in time. What a step is, the problem says.
 
-    shape: the last one accepted; reaction: (n, 6) of supports; internal_forces, external_forces: (n, 6) of stresses and
-    of loads there.
+    given: what it was asked; problem: what is computed, with nodes of its own behind those given where elements need
+    them; shape: the last one accepted; reaction: (n, 6) of supports; internal_forces, external_forces: (n, 6) of
+    stresses and of loads there.
     """
 
     def __init__(self, problem: Problem, *, threads: int | None = None) -> None:
-        self.problem = problem
+        self.given = problem
+        self.problem = problem = with_centres(problem)
         self.threads = threads or 1
         self.assembly = Assembly(problem, threads=self.threads)
         self.loads = Loads(problem, self.assembly.groups)
@@ -69,6 +73,8 @@ class Solver:
         p = self.problem
         if p.rigid:
             return Guided(self)
+        if any(has_life(e) for e in p.elements) and (p.modes or p.path is not None or p.dynamics is not None):
+            raise ValueError("elements are born and die in statics alone, with loads that are given")
         if p.modes:
             return Vibrations()
         if p.path is not None:
@@ -123,6 +129,13 @@ class Solver:
                 factor = self.loads.factor(m.curve, until) - (self.loads.factor(m.curve, now) if now > 0.0 else 0.0)
             change[m.nodes, m.dofs] += factor * m.values
         return change
+
+    def released(self, shape: Shape, dt: float) -> None:
+        """Before a shape is accepted: what the forces of elements that went had done on the way is lost."""
+        moved = shape.u - self.shape.u
+        there, _ = self.assembly.evaluate(self.shape, self.shape, 0.0, stiff=False)
+        self.damped += 0.5 * float(((self.internal_forces - there) * moved).sum())
+        self.assembly.evaluate(shape, self.shape, dt, stiff=False)
 
     def accept(
         self, shape: Shape, external: Floats, internal: Floats, inertia: Floats | None = None,

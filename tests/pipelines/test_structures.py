@@ -109,6 +109,31 @@ def test_what_goes_on_ends_in_the_same_bits(scene: Path, tmp_path: Path) -> None
     np.testing.assert_array_equal(whole.arrays()["displacement"], parts.arrays()["displacement"])
 
 
+def test_a_listing_on_request_reads_back(scene: Path, tmp_path: Path) -> None:
+    """Every step's displacements, reactions and stresses in columns; a resumed run's file is that of a whole one."""
+    run([scene], output=tmp_path / "out", options={"fem.listing": True})
+    text = (tmp_path / "out/listing.lst").read_text()
+    assert text.count("STEP NUMBER =") == 4
+    last = text[text.rindex("STEP NUMBER =") :].splitlines()
+    found = load(tmp_path / "out").arrays(None, -1)
+    at = next(k for k, line in enumerate(last) if "D I S P L" in line) + 3
+    rows = np.array([[float(v) for v in line.split()] for line in last[at : at + 6]])
+    assert rows[:, 0].tolist() == [1, 2, 3, 4, 5, 6]
+    np.testing.assert_allclose(rows[:, 3], found["displacement"][:, 2], rtol=1e-5, atol=1e-12)
+    np.testing.assert_allclose(rows[:, 5], found["rotation"][:, 1], rtol=1e-5, atol=1e-12)
+    at = next(k for k, line in enumerate(last) if "R E A C" in line) + 3
+    assert sum(float(line.split()[3]) for line in last[at : at + 2]) == pytest.approx(2e-4, rel=1e-5)
+    at = next(k for k, line in enumerate(last) if "LAYER" in line) + 1
+    layers = np.array([[float(v) for v in line.split()] for line in last[at : at + 6]])
+    assert layers[:, :2].astype(int).tolist() == [[e, k] for e in (3, 4) for k in (1, 2, 3)]
+    np.testing.assert_allclose(layers[0, 2], -layers[2, 2], rtol=1e-5)
+    run([scene], output=tmp_path / "parts", options={"fem.listing": True}, until=0.5)
+    run([scene], output=tmp_path / "parts", options={"fem.listing": True}, resume=True)
+    assert (tmp_path / "parts/listing.lst").read_text() == text
+    run([scene], output=tmp_path / "without")
+    assert not (tmp_path / "without/listing.lst").exists()
+
+
 def test_a_structure_that_is_not_held_is_told(scene: Path, tmp_path: Path) -> None:
     (tmp_path / "strip.yaml").write_text(SETTINGS.replace("clamped: {fixed: all}", "clamped: {fixed: x}"))
     ran = CliRunner().invoke(app, ["run", str(scene), "-o", str(tmp_path / "out")])

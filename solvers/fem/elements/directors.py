@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...jit import kernel
+from .shapes import NODES, functions
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -15,16 +16,15 @@ FOLD = math.radians(20.0)  # surfaces that meet at more are two
 
 
 def directors(x: Floats, groups: list[Ints], fixed: NDArray[np.bool_], fold: float = FOLD) -> list[Floats]:
-    """(e, k, 3) of the corners of each group of shells. groups: corner nodes (e, k) in turn; fixed: (n, 6).
+    """(e, k, 3) of the nodes of each group of shells. groups: nodes (e, k), 3, 4 or 9 of them; fixed: (n, 6).
 
     At a node on a symmetry plane (held across it, with no turn out of it) the director lies in the plane.
     """
     cross = [_corner_normals(x, corners) for corners in groups]
-    elements = [_unit(normals.sum(axis=1)) for normals in cross]
     flat_nodes = np.concatenate([g.ravel() for g in groups])
     flat_cross = np.ascontiguousarray(np.concatenate([c.reshape(-1, 3) for c in cross]))
     flat_own = np.ascontiguousarray(
-        np.concatenate([np.repeat(n, g.shape[1], axis=0) for n, g in zip(elements, groups, strict=True)])
+        np.concatenate([_of_elements(c) if c.shape[1] < 9 else _unit(c.reshape(-1, 3)) for c in cross])
     )
     order = np.argsort(flat_nodes, kind="stable")
     starts = np.searchsorted(flat_nodes[order], np.arange(len(x) + 1))
@@ -36,9 +36,17 @@ def directors(x: Floats, groups: list[Ints], fixed: NDArray[np.bool_], fold: flo
     return [total[a:b].reshape(*g.shape, 3) for a, b, g in zip(ends[:-1], ends[1:], groups, strict=True)]
 
 
+def _of_elements(cross: Floats) -> Floats:
+    """Each element's normal (e k, 3), by which surfaces are told from one another; curved ones have none."""
+    return np.repeat(_unit(cross.sum(axis=1)), cross.shape[1], axis=0)
+
+
 def _corner_normals(x: Floats, corners: Ints) -> Floats:
-    """(e, k, 3) normal at each corner, as long as the area that the corner spans."""
+    """(e, k, 3) normal at each node, as long as the area that the corner spans."""
     p = x[corners]
+    if corners.shape[1] == 9:
+        tangents = np.einsum("nkd,ekc->dnec", functions("quad9", np.array(NODES["quad9"]))[1], p)
+        return np.ascontiguousarray(np.cross(tangents[0], tangents[1]).transpose(1, 0, 2))
     return np.cross(np.roll(p, -1, axis=1) - p, np.roll(p, 1, axis=1) - p)
 
 

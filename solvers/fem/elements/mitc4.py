@@ -33,10 +33,10 @@ def shape_at(r, s, values, by_r, by_s):
 
 @kernel
 def base_at(values, by_r, by_s, y, d, base):
-    """base (5, 3): mid-surface y_r, y_s, their slopes along t, and y_t. d: (4, 3) half-thickness directors."""
+    """base (5, 3): mid-surface y_r, y_s, their slopes along t, and y_t. d: (n, 3) half-thickness directors."""
     for m in range(3):
         a = b = c = e = f = 0.0
-        for i in range(4):
+        for i in range(len(values)):
             a += by_r[i] * y[i, m]
             b += by_s[i] * y[i, m]
             c += by_r[i] * d[i, m]
@@ -253,13 +253,14 @@ def enhanced_rows(x, d, r, s, volume, frame, root, extra, scratch):
 
 @kernel
 def drilling(values, by_r, by_s, base, d, frame, turns, local, rows):
-    """Drilling value and its rows (6, 4) at t = 0: the membrane's turn less the nodes' (total Lagrangian).
+    """Drilling value and its rows (6, n) at t = 0: the membrane's turn less the nodes' (total Lagrangian).
 
-    base, d: now; frame, local: of the first shape; turns: (4, 3, 3) of the nodes.
+    base, d: now; frame, local: of the first shape; turns: (n, 3, 3) of the nodes.
     """
+    n = len(values)
     d1, d2, y1, y2 = np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3)
-    own1, own2, push, cross = np.empty((4, 3)), np.empty((4, 3)), np.empty(3), np.empty(3)
-    for i in range(4):
+    own1, own2, push, cross = np.empty((n, 3)), np.empty((n, 3)), np.empty(3), np.empty(3)
+    for i in range(n):
         for m in range(3):
             own1[i, m] = dot(turns[i, m], frame[0])
             own2[i, m] = dot(turns[i, m], frame[1])
@@ -270,7 +271,7 @@ def drilling(values, by_r, by_s, base, d, frame, turns, local, rows):
         y2[m] = local[1, 0] * base[0, m] + local[1, 1] * base[1, m] + local[1, 2] * base[4, m]
     for m in range(3):
         push[m] = local[0, 2] * d2[m] - local[1, 2] * d1[m]
-    for i in range(4):
+    for i in range(n):
         n1 = local[0, 0] * by_r[i] + local[0, 1] * by_s[i]
         n2 = local[1, 0] * by_r[i] + local[1, 1] * by_s[i]
         cross[:] = 0.0

@@ -21,8 +21,8 @@ from .mitc4 import (
     tied_weights,
     to_local,
 )
-from .shapes import functions, table
-from .shell_gather import gather
+from .shapes import functions, surface_products
+from .shell_gather import gather, gather_reference
 from .shell_geometry import bending_geometry, tied_geometry
 
 
@@ -261,10 +261,7 @@ def volumes(nodes, x, directors, half, points, point_weights, layers, layer_weig
     frame, dual, local = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
     at = 0
     for q in range(nodes.shape[0]):
-        for i in range(4):
-            for m in range(3):
-                reference[i, m] = x[nodes[q, i], m]
-                thick[i, m] = half[q, i] * directors[q, i, m]
+        gather_reference(nodes, q, x, directors, half, reference, thick)
         for g in range(len(points)):
             shape_at(points[g, 0], points[g, 1], values, by_r, by_s)
             base_at(values, by_r, by_s, reference, thick, base)
@@ -282,10 +279,7 @@ def frames(nodes, x, directors, half, points):
     values, by_r, by_s, base = np.empty(4), np.empty(4), np.empty(4), np.empty((5, 3))
     frame, dual, local = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
     for q in range(nodes.shape[0]):
-        for i in range(4):
-            for m in range(3):
-                reference[i, m] = x[nodes[q, i], m]
-                thick[i, m] = half[q, i] * directors[q, i, m]
+        gather_reference(nodes, q, x, directors, half, reference, thick)
         for g in range(len(points)):
             shape_at(points[g, 0], points[g, 1], values, by_r, by_s)
             base_at(values, by_r, by_s, reference, thick, base)
@@ -296,11 +290,7 @@ def frames(nodes, x, directors, half, points):
 
 def areas(nodes: NDArray[np.int64], x: NDArray[np.float64]) -> NDArray[np.float64]:
     """(e, 4, 4) integrals of products of shape functions over the mid-surface."""
-    t = table("quad4", full=True)
-    tangents = np.einsum("gkd,eki->egdi", t.slopes, x[nodes])
-    area = np.linalg.norm(np.cross(tangents[:, :, 0], tangents[:, :, 1]), axis=2) * t.weights
-    out: NDArray[np.float64] = np.einsum("eg,gk,gl->ekl", area, t.values, t.values)
-    return out
+    return surface_products("quad4", x[nodes])
 
 
 def extrapolation(points: NDArray[np.float64]) -> NDArray[np.float64]:

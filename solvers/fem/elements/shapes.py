@@ -172,6 +172,15 @@ def extrapolation(kind: str, gauss: tuple[int, ...] = ()) -> Floats:
     return np.ascontiguousarray(at_nodes @ np.linalg.pinv(at_points), dtype=float)
 
 
+def surface_products(kind: str, corners: Floats) -> Floats:
+    """(e, n, n) integrals of products of shape functions over surfaces with nodes at corners (e, n, 3)."""
+    t = table(kind, full=True)
+    tangents = np.einsum("gkd,eki->egdi", t.slopes, corners)
+    area = np.linalg.norm(np.cross(tangents[:, :, 0], tangents[:, :, 1]), axis=2) * t.weights
+    out: Floats = np.einsum("eg,gk,gl->ekl", area, t.values, t.values)
+    return out
+
+
 @functools.cache
 def _inverse(kind: str) -> Floats:
     values, _ = _terms(kind, np.array(NODES[kind], dtype=float))

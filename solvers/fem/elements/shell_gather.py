@@ -6,6 +6,15 @@ from ...jit import kernel
 
 
 @kernel
+def gather_reference(nodes, q, x, directors, half, reference, thick):
+    """The first shape of one shell."""
+    for i in range(nodes.shape[1]):
+        for m in range(3):
+            reference[i, m] = x[nodes[q, i], m]
+            thick[i, m] = half[q, i] * directors[q, i, m]
+
+
+@kernel
 def gather(nodes, q, x, u, corner, directors, half, turn, reference, thick, now, moved, turns, finite):
     """One shell of k nodes: first shape (k, 3) and half-thickness directors, those now, displacement (k, 6), turns."""
     for i in range(nodes.shape[1]):

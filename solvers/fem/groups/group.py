@@ -61,7 +61,10 @@ class Group(Protocol):
 
     elements: Elements
     dofs: NDArray[np.int64]
-    volume: Floats
+
+    @property
+    def volume(self) -> Floats:
+        """(e,) of the elements."""
 
     def bind(self, structure: Structure) -> None:
         """To a matrix structure."""

@@ -1,4 +1,4 @@
-"""Shells of three and four nodes with their points in the plane and through the thickness."""
+"""Shells of three, four and nine nodes with their points in the plane and through the thickness."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...materials import PLASTIC_STRAIN, state_rows
-from ..elements import mitc3_loops, mitc4_loops
+from ..elements import mitc3_loops, mitc4_loops, mitc9_loops
 from ..elements.mitc3 import MODES
 from ..elements.points import advance_plane_stress, elastic_modulus
 from ..elements.shapes import table
@@ -19,11 +19,12 @@ from .group import CHUNK, Bad, Sink
 
 Floats = NDArray[np.float64]
 DRILL = 1e-3  # of the shear modulus times the thickness
+_LOOPS = {3: mitc3_loops, 4: mitc4_loops, 9: mitc9_loops}
 _DOUBLED = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
 
 
 class ShellGroup:
-    """A group of three- or four-node shells; see `group.Group`."""
+    """A group of shells of one kind; see `group.Group`."""
 
     def __init__(self, elements: Elements, x: Floats, directors: Floats) -> None:
         self.elements = elements
@@ -31,20 +32,20 @@ class ShellGroup:
         self.nodes = np.ascontiguousarray(elements.nodes, dtype=np.int64)
         self.dofs = np.arange(6)
         e, k = self.nodes.shape
-        self._loops: Any = mitc4_loops if k == 4 else mitc3_loops
+        self._loops: Any = _LOOPS[k]
         thickness = np.zeros(e) if elements.thickness is None else np.asarray(elements.thickness, dtype=float)
         self.thickness = thickness if thickness.ndim == 2 else np.repeat(thickness[:, None], k, axis=1)
         if not (self.thickness > 0.0).all():
             raise Bad(int(elements.ids[int(np.argmin(self.thickness.min(axis=1)))]), "its thickness is not positive")
         self._half = np.ascontiguousarray(0.5 * self.thickness)
         self.directors = np.ascontiguousarray(directors)
-        plane = table("quad4", elements.gauss[:2]) if k == 4 else table("tri6", full=True)
+        plane = table("quad4", elements.gauss[:2]) if k == 4 else table("quad9") if k == 9 else table("tri6", full=True)
         self._points, self._weights = np.ascontiguousarray(plane.points), plane.weights
         layers = table("line2", (elements.layers,))
         self._layers, self._layer_weights = np.ascontiguousarray(layers.points[:, 0]), layers.weights
         self._root = float(np.sqrt(elements.shear_factor))
         self._finite = None if elements.geometry == SMALL else True
-        modes = elements.modes if k == 4 else MODES  # a triangle's are its bubble
+        modes = elements.modes if k == 4 else MODES if k == 3 else 0  # a triangle's are its bubble
         self.modes: int | None = modes or None
         m = e * len(self._weights) * len(self._layers)
         rows = max(1, state_rows(elements.law))

@@ -3,29 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 import numpy as np
 import pytest
-from fem_meshes import bricks, group, held, loaded, moved, problem, quads, shell, solve
+from fem_meshes import bricks, eight, group, held, loaded, moved, problem, quads, shell, solve
 
 from zrno.solvers import fem
 from zrno.solvers.fem import output
-from zrno.solvers.fem.elements import shapes
 from zrno.solvers.materials import Elastic
-
-Place = Callable[[np.ndarray, np.ndarray], np.ndarray]
-
-
-def _eight(nx: int, ny: int, place: Place) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Eight-node quadrilaterals of a mapped unit square; numbers (2 nx + 1, 2 ny + 1), -1 where there is no node."""
-    r, s = np.meshgrid(np.linspace(0, 1, 2 * nx + 1), np.linspace(0, 1, 2 * ny + 1), indexing="ij")
-    there = ~((np.arange(2 * nx + 1)[:, None] % 2 == 1) & (np.arange(2 * ny + 1)[None] % 2 == 1))
-    number = np.full(r.shape, -1)
-    number[there] = np.arange(there.sum())
-    at = {-1: slice(None, -1, 2), 1: slice(2, None, 2), 0: slice(1, None, 2)}
-    nodes = np.stack([number[at[int(a)], at[int(b)]] for a, b in shapes.NODES["quad8"]], axis=-1).reshape(-1, 8)
-    return place(r[there], s[there]), nodes, number
 
 
 def _ellipses(r: np.ndarray, s: np.ndarray) -> np.ndarray:
@@ -50,7 +35,7 @@ def test_cooks_membrane(n: int, modes: int, within: float) -> None:
 
 def test_le1_an_elliptic_membrane() -> None:
     """sigma_yy at D (2, 0): 92.7 MPa."""
-    x, nodes, number = _eight(8, 12, _ellipses)
+    x, nodes, number = eight(8, 12, _ellipses)
     edge = number[-1]
     edges = np.stack([edge[:-1:2], edge[2::2], edge[1::2]], axis=-1)  # outwards from left to right of their way
     pull = fem.FaceLoad("line3", edges, np.full(edges.shape, -10e6), thickness=np.ones(len(edges)))
@@ -63,7 +48,7 @@ def test_le1_an_elliptic_membrane() -> None:
 
 def test_le10_a_thick_plate() -> None:
     """sigma_yy at D on the top (2, 0, 0.6): -5.38 MPa, by twenty-node hexahedra."""
-    flat, quad, number = _eight(6, 8, _ellipses)
+    flat, quad, number = eight(6, 8, _ellipses)
     m = 4
     levels = np.linspace(0.0, 0.6, 2 * m + 1)
     count = len(flat)

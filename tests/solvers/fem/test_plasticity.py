@@ -177,6 +177,55 @@ def test_one_element_with_overstress(rate: float) -> None:
 # a beam that another program computed, and footings
 
 
+def _krieg_and_key(stress: np.ndarray, increment: np.ndarray, shear: float, bulk: float, limit: float) -> np.ndarray:
+    """Exact stress (3, 3) of a perfectly plastic von Mises law after a straight increment of strain (Krieg & Key 1976):
+    elastic to the yield surface, then the angle psi of stress and strain closes, tan(psi / 2) by exp(-2 G |e| / R).
+    """
+    one = np.eye(3)
+    mean = np.trace(stress) / 3 + bulk * np.trace(increment)
+    s, e = stress - np.trace(stress) / 3 * one, increment - np.trace(increment) / 3 * one
+    radius, size = math.sqrt(2 / 3) * limit, float(np.linalg.norm(e))
+    trial = s + 2 * shear * e
+    if np.linalg.norm(trial) <= radius:
+        return trial + mean * one
+    along, square = 2 * shear * float((s * e).sum()), (2 * shear * size) ** 2
+    rest = float((s * s).sum()) - radius**2
+    share = (-along + math.sqrt(max(along**2 - square * rest, 0.0))) / square  # to the yield surface
+    s = s + share * 2 * shear * e
+    n = e / size
+    psi = math.acos(min(max(float((s * n).sum()) / radius, -1.0), 1.0))
+    across = s - float((s * n).sum()) * n
+    later = 2 * math.atan(math.tan(psi / 2) * math.exp(-2 * shear * (1 - share) * size / radius))
+    length = float(np.linalg.norm(across))
+    side = across / length if length > 1e-12 * radius else np.zeros((3, 3))
+    return radius * (math.cos(later) * n + math.sin(later) * side) + mean * one
+
+
+@pytest.mark.parametrize(("parts", "error"), [(1, 0.4898), (10, 0.0762), (100, 0.00805)])
+def test_nafems_path_in_plane_strain(parts: int, error: float) -> None:
+    """NL1: E 250e3, nu 0.25, yield 5; eight steps of 2.5e-5 along x, x, y, y and back, by one element.
+
+    The worst stress against the exact one: of the first order in the step, as a return along the normal is.
+    """
+    law = laws.von_mises(250e3, 0.25, 5.0)
+    x, nodes, _ = quads(1, 1, lambda r, s: np.stack([r, s, 0 * r], -1))
+    path = np.array([(1, 0), (1, 0), (0, 1), (0, 1), (-1, 0), (-1, 0), (0, -1), (0, -1)])
+    along = 2.5e-5 * np.concatenate([[(0, 0)], np.cumsum(path, axis=0)])
+    curves = tuple(fem.Curve(np.arange(9.0), along[:, k].copy()) for k in (0, 1))
+    motions = tuple(fem.Motion(np.arange(4), np.full(4, k), x[:, k].copy(), k) for k in (0, 1))
+    elements = group("quad4", "plane", nodes, law, plane="strain")
+    p = problem(x, elements, held(4, (slice(None), "z")), curves=curves, motions=motions,
+                steps=((8 * parts, 1.0 / parts),))  # fmt: skip
+    solver, seen = solve(p, lambda s: s.assembly.groups[0].stress[0].copy())  # type: ignore[attr-defined]
+    exact, shear, bulk = np.zeros((3, 3)), 100e3, 250e3 / 1.5
+    worst = 0.0
+    for k, step in enumerate(path):
+        exact = _krieg_and_key(exact, np.diag([2.5e-5 * step[0], 2.5e-5 * step[1], 0.0]), shear, bulk, 5.0)
+        worst = max(worst, float(np.abs(seen[(k + 1) * parts - 1][:3] - np.diag(exact)).max()))
+    assert worst == pytest.approx(error, rel=0.02)
+    assert solver.energy_report()["balance_error"] < 0.05
+
+
 @pytest.mark.slow
 def test_a_cantilever_flows_as_other_programs_say() -> None:
     """60 x 12 x 12 bricks: 794.4912 by CalculiX and felupe (reference/fem/material_point.csv, EP1)."""

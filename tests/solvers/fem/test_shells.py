@@ -284,6 +284,16 @@ def test_a_cantilever_under_shear_follows_szes_curve(shared) -> None:  # type: i
         assert w == pytest.approx(row[2], rel=0.01)
 
 
+def test_a_load_at_once_takes_few_iterations() -> None:
+    """A thin strip bent by a quarter of its length in one step: with factors of the last iteration it does not end."""
+    x, nodes, number = quads(8, 1, lambda r, s: np.stack([4 * r, s, 0 * r], -1))
+    elements = shell(nodes, 0.1, Elastic.from_engineering(2.1e5, 0.0), geometry="total")
+    pull = loaded(number[-1], 2, 1.0)
+    solver, _ = solve(problem(x, elements, held(len(x), (number[0], "xyzabc")), nodal_loads=(pull,)))
+    assert moved(solver, number[-1, 0], 2) == pytest.approx(1.1177, rel=1e-4)
+    assert solver.iterations <= 10
+
+
 def test_a_hinged_roof_snaps_through(shared) -> None:  # type: ignore[no-untyped-def]
     x, nodes, number = quads(8, 8, lambda r, s: np.stack([2540 * np.sin(0.1 * r), 254 * s, 2540 * np.cos(0.1 * r)], -1))
     fixed = held(len(x), (number[0], "xbc"), (number[:, 0], "yac"), (number[-1], "xyz"))
