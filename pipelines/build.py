@@ -109,6 +109,7 @@ def particle_problem(
         transducers=_transducers(control, numbers),
         cures=_cures(control, chosen),
         local_steps=None if chosen.local_steps == "auto" else chosen.local_steps,
+        sleep=chosen.sleep,
         **contact.options(control, chosen, len(bodies)),
     )
 

@@ -66,6 +66,7 @@ class Sph(Section):
     z, linear between them, in place of the deck's. laws: by the name of the deck's material, in place of the elastic
     one there. bearing: names of materials whose particles, all held, bear the stress of what leans on them.
     local_steps: stiff bodies take several steps within one of the others; auto: where that goes and is worth while.
+    sleep: what moves slower than this part of sqrt(g h) for a time is held, and not computed, until it is pushed; 0: none.
     """
 
     kernel: Literal["cubic", "quintic", "lucy", "gaussian", "wendland_c2", "wendland_c4"] = "cubic"
@@ -84,6 +85,7 @@ class Sph(Section):
     laws: dict[str, Soil] = Field(default_factory=dict)
     bearing: list[str] = Field(default_factory=list)
     local_steps: bool | Literal["auto"] = False
+    sleep: Part = 0.0
 
 
 def of_options(options: Mapping[str, Any]) -> Sph:

@@ -83,7 +83,8 @@ class Problem:
     between bodies act along the normals of the contact: particles then slide over a coarse wall as over a smooth one
     (their centres turn nothing exactly). local_steps: stiff bodies take several steps within one of the others
     (`local`); None: where that goes and is worth while. axisymmetric: a plane problem whose x is the distance from the
-    axis y; masses are those of whole rings (`rings`).
+    axis y; masses are those of whole rings (`rings`). sleep: what moves slower than this part of sqrt(g h) for a time is
+    held until it is pushed (`rest`), 0 for none.
     """
 
     dimension: int
@@ -123,6 +124,7 @@ class Problem:
     contact_by_normals: bool = False
     local_steps: bool | None = False
     axisymmetric: bool = False
+    sleep: float = 0.0
 
     def __post_init__(self) -> None:
         n = len(self.x)

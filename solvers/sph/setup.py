@@ -50,6 +50,7 @@ def rows_of(p: Problem, contact: Contact, cures: Cures, *, local: bool) -> Rows:
         lagrangian=any(b.lagrangian for b in p.bodies),
         local=local,
         hoop=p.axisymmetric,
+        sleep=p.sleep > 0.0,
     )
 
 
@@ -145,6 +146,7 @@ def described(p: Problem, contact: Contact, cures: Cures, has: Rows, threads: in
         f"dynamic relaxation {p.relaxation:g}": p.relaxation != 1.0,
         f"{len(p.planes)} boundary plane(s)": bool(p.planes),
         "base acceleration by curve": has.body_work,
+        f"sleep below {p.sleep:g} sqrt(g h)": has.sleep,
         "as the original program": p.original,
     }
     return (

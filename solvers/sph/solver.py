@@ -19,7 +19,7 @@ from ..frame import Frame
 from ..materials import PLASTIC_STRAIN
 from ..neighbours import Cells, NeighbourList
 from ..threads import available, run
-from . import across, blame, ghosts, local, measures, probes, reference, setup, step
+from . import across, blame, ghosts, local, measures, probes, reference, rest, setup, step
 from .contact import contact_of
 from .problem import Cures, Problem
 from .rings import TURN
@@ -57,6 +57,7 @@ class Solver:
         self._mirrors = None if problem.original else ghosts.mirrors(problem.planes)
         self._numbers = setup.numbers_of(problem, self._contact, self._shape, mirrors=self._mirrors is not None)
         self._stiff = local.classes(problem, self._numbers.wave, xsph=cures.xsph > 0.0)
+        self._resting = rest.resting(problem, self._numbers.wave)
         self._inner = np.zeros(local.INNER)
         self._slow = n if self._stiff is None else int(np.count_nonzero(~self._stiff[problem.body]))
         has = self._has = setup.rows_of(problem, self._contact, cures, local=self._stiff is not None)
@@ -185,8 +186,8 @@ class Solver:
             None if images is None else images.sign, None if images is None else images.shift, self._mirrors,
             self._contact.friction, self._contact.damping, self._contact.normals, self._contact.by_normals,
             self._contact.walls, a.wall_slip if has.wall_slip else None, a.contact_heat,
-            True if self._plain else None, a.hoop, self._rows_apart, self._reference, a, self._numbers, self._laws,
-            self._progress, float(until), float(pause), steps, self._spare**2,
+            True if self._plain else None, a.hoop, self._rows_apart, self._reference, self._resting, a, self._numbers,
+            self._laws, self._progress, float(until), float(pause), steps, self._spare**2,
         )  # fmt: skip
         return int(found[0])
 
@@ -296,6 +297,8 @@ class Solver:
         if self._stiff is not None:
             u, a, c, held = (s.rows(name)[:, self._slow : n] for name in ("u", "a", "c", "held"))
             velocity[:, self._slow :] = local.velocity(u, a, c, held, float(self._progress[step.LAST]), self._inner)
+        if self._resting is not None:
+            velocity[:, s.rows("still")[0, :n] != rest.AWAKE] = 0.0
         for k in range(s.d):
             velocity[k, (s.fixed[:n] >> k) & 1 == 1] = 0.0
         return velocity
@@ -352,8 +355,15 @@ class Solver:
             **stored,
             "max_plastic_strain": float(plastic.max()),
             "step": float(self.step),
+            **self._sleepers(),
             **probes.columns(self.problem, self._state, self.live, self._shape, self._velocity()),
         }
+
+    def _sleepers(self) -> dict[str, float]:
+        if self._resting is None:
+            return {}
+        still = self._state.rows("still")[0, : self.live]
+        return {"asleep": float(np.count_nonzero(still != rest.AWAKE)), "deep": float(np.sum(still == rest.DEEP))}
 
     def energy_report(self) -> dict[str, float]:
         """Energies at the start and now, and how far their balance is out, see `measures.report`."""

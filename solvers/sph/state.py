@@ -32,7 +32,8 @@ class Arrays(NamedTuple):
     slid, the load of friction (d + 2, m); wall_slip: the same for each wall; colour: normal to other bodies, mobilised:
     traction by normal force, (d, m) each (see `slip`). Of total-Lagrangian bodies: deformation (d*d): F - I;
     hourglass: rows of `nominal`; nominal (d*d): V P M^-1 - kappa (F - I)/2. held (2 d, m): of
-    stiff bodies with local steps, see `local`. hoop: r u, see `rings`.
+    stiff bodies with local steps, see `local`. hoop: r u, see `rings`. still, quiet, push: of sleeping, see `rest`;
+    push (2 d, m): the speed that a sleeper was pushed to, and its acceleration when it fell asleep.
     """
 
     x: Any
@@ -102,6 +103,9 @@ class Arrays(NamedTuple):
     hourglass: Any
     nominal: Any
     held: Any
+    still: Any
+    quiet: Any
+    push: Any
 
 
 class Numbers(NamedTuple):
@@ -162,7 +166,7 @@ class Rows:
     state: of the laws; the others say whether: contact, correction, artificial stress, pair viscosity (heat), density
     and stress diffusion, xsph, a changing h, a changing body force, a changing wave speed, heat of contact, slip
     between bodies, normals; wall_slip: walls with friction; total-Lagrangian bodies; local steps; hoop stress of
-    a body of revolution.
+    a body of revolution; sleep of what is at rest.
     """
 
     state: int = 0
@@ -183,6 +187,7 @@ class Rows:
     lagrangian: bool = False
     local: bool = False
     hoop: bool = False
+    sleep: bool = False
 
 
 class State:
@@ -207,6 +212,7 @@ class State:
             "slip": (d + 2) * has.slip, "wall_slip": (d + 2) * has.wall_slip,
             "deformation": d * d if has.lagrangian else 0, "hourglass": HOURGLASS if has.lagrangian else 0,
             "held": 2 * d * has.local,
+            "still": int(has.sleep), "quiet": int(has.sleep), "push": 2 * d * has.sleep,
             "state": has.state,
             "gradient": d * d, "s": (d * d if has.correction or has.hoop else 6 if solid else 3), "nearest": 1,
             "c": d if has.contact else 0, "correction": (6 if solid else 3) if has.correction else 0,
@@ -220,7 +226,8 @@ class State:
             self.slices[name] = slice(at, at + rows)
             at += rows
         # the rows above are made anew in each step; those before them follow a sorted particle and go into a checkpoint
-        self.lasting = self.slices["state"].stop
+        # (of sleepers nothing is made anew)
+        self.lasting = at if has.sleep else self.slices["state"].stop
         self._rows = at
         self.id: NDArray[np.int64]
         self.material: NDArray[np.int64]
@@ -336,4 +343,7 @@ class State:
             hourglass=self.rows("hourglass"),
             nominal=self.rows("nominal"),
             held=self.rows("held"),
+            still=self.row("still"),
+            quiet=self.row("quiet"),
+            push=self.rows("push"),
         )
