@@ -66,7 +66,7 @@ class Sph(Section):
     z, linear between them, in place of the deck's. laws: by the name of the deck's material, in place of the elastic
     one there. bearing: names of materials whose particles, all held, bear the stress of what leans on them.
     local_steps: stiff bodies take several steps within one of the others; auto: where that goes and is worth while.
-    sleep: what moves slower than this part of sqrt(g h) for a time is held, and not computed, until it is pushed; 0: none.
+    sleep: what moves slower than this part of sqrt(g h) for a time is held, and not computed, until it is pushed.
     """
 
     kernel: Literal["cubic", "quintic", "lucy", "gaussian", "wendland_c2", "wendland_c4"] = "cubic"

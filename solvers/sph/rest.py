@@ -5,10 +5,10 @@ ends (what it had is dissipated), its place is held. A sleeper with an awake nei
 go on, so that action, work and energy are those of any held particle. One whose neighbours all sleep is `DEEP`: nothing
 of it changes, and nothing is computed.
 
-What wakes a sleeper is the push that it is given, a speed: push' = (a - a when it fell asleep) - push/tau. It wakes when
-that passes the limit, at once if it is pushed hard, in the end if for long with BEARS of its weight, and not by what
-swings to and fro. Of the held that is found in each step, of the deep in each LOOK-th, when the forces on all are found. Who wakes has
-its neighbours held from then on: a disturbance travels through the sleepers at a ring of neighbours a step.
+What wakes a sleeper is the push that it is given, a speed: push' = (a - a when it fell asleep) - push/tau. It wakes
+when that passes the limit, at once if it is pushed hard, in the end if for long with BEARS of its weight, and not by
+what swings to and fro. Of the held that is found in each step, of the deep in each LOOK-th, when the forces on all are
+found. Who wakes has its neighbours held from then on: a disturbance wakes ring after ring of neighbours.
 """
 
 from __future__ import annotations
@@ -62,6 +62,13 @@ def resting(p: Problem, wave: Floats) -> Resting | None:
     return Resting(speed, max(PASSAGES * h / slowest, FALLS * speed / weight), speed / (BEARS * weight))
 
 
+def columns(still: Floats) -> dict[str, float]:
+    """What the history says of the sleepers. still: the row, (0 | 1, n)."""
+    if not len(still):
+        return {}
+    return {"asleep": float(np.count_nonzero(still)), "deep": float(np.count_nonzero(still == DEEP))}
+
+
 @kernel
 def run_of(i, end, resting, most, still):
     """The first stretch of particles in i..end whose `still` is `most` at most; all where nothing sleeps."""
@@ -96,9 +103,7 @@ def _alone(i, n, cx, source, offset, row, least, arrays):
     """Whether no neighbour, of any body, is below `least`."""
     if _restless(i, n, arrays.first, arrays.count, arrays.rows, source, offset, row, least):
         return False
-    return cx is None or not _restless(
-        i, n, arrays.c_first, arrays.c_count, arrays.c_rows, source, offset, row, least
-    )
+    return cx is None or not _restless(i, n, arrays.c_first, arrays.c_count, arrays.c_rows, source, offset, row, least)
 
 
 @kernel

@@ -7,6 +7,7 @@ import numpy as np
 from ..materials import constant_wave, sound_speed, state_rows
 from ..neighbours import FAR
 from .contact import Contact
+from .ghosts import LIMIT
 from .problem import STEP_OPTIONS, Cures, Problem
 from .smoothing import Shape, normaliser, value_at
 from .state import Numbers, Rows, State
@@ -51,6 +52,8 @@ def rows_of(p: Problem, contact: Contact, cures: Cures, *, local: bool) -> Rows:
         local=local,
         hoop=p.axisymmetric,
         sleep=p.sleep > 0.0,
+        birth=p.birth is not None,
+        absent=p.birth is not None or any(plane.kind == LIMIT for plane in p.planes),
     )
 
 
@@ -121,6 +124,8 @@ def fill(s: State, p: Problem, numbers: Numbers, has: Rows, shape: Shape) -> Non
         s.fixed[:n] = p.fixed @ np.array([1, 2, 4])
     if has.changing_h:
         s.rows("h_start")[0, :n] = p.h * p.density ** (1.0 / p.dimension)
+    if p.birth is not None:
+        s.rows("birth")[0, :n] = p.birth
     if has.wave:
         s.rows("wave")[0, :n] = numbers.wave[p.body]
     if has.correction:  # the unit matrix: the first sums of forces come before the first strain
@@ -146,6 +151,7 @@ def described(p: Problem, contact: Contact, cures: Cures, has: Rows, threads: in
         f"dynamic relaxation {p.relaxation:g}": p.relaxation != 1.0,
         f"{len(p.planes)} boundary plane(s)": bool(p.planes),
         "base acceleration by curve": has.body_work,
+        "births": has.birth,
         f"sleep below {p.sleep:g} sqrt(g h)": has.sleep,
         "as the original program": p.original,
     }

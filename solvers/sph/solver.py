@@ -19,10 +19,9 @@ from ..frame import Frame
 from ..materials import PLASTIC_STRAIN
 from ..neighbours import Cells, NeighbourList
 from ..threads import available, run
-from . import across, blame, ghosts, local, measures, probes, reference, rest, setup, step
+from . import births, blame, ghosts, local, measures, probes, reference, rest, setup, step
 from .contact import contact_of
 from .problem import Cures, Problem
-from .rings import TURN
 from .smoothing import shape_of
 from .state import Arrays, State
 
@@ -71,6 +70,9 @@ class Solver:
         self._laws = tuple(b.law for b in problem.bodies)
         setup.fill(self._state, problem, self._numbers, has, self._shape)
         self._spare = 0.5 * self._skin  # how far particles go before the next list
+        if has.birth:
+            self.live = births.set_apart(self._state, self.threads)
+        self._due = births.due(self._state, self.live)
         self._reference = self._make_reference() if has.lagrangian else None
         self._rebuild()
         self._progress[step.PENDING] = 1.0
@@ -187,7 +189,7 @@ class Solver:
             self._contact.friction, self._contact.damping, self._contact.normals, self._contact.by_normals,
             self._contact.walls, a.wall_slip if has.wall_slip else None, a.contact_heat,
             True if self._plain else None, a.hoop, self._rows_apart, self._reference, self._resting, a, self._numbers,
-            self._laws, self._progress, float(until), float(pause), steps, self._spare**2,
+            self._laws, self._progress, float(until), float(pause), self._due, steps, self._spare**2,
         )  # fmt: skip
         return int(found[0])
 
@@ -220,8 +222,12 @@ class Solver:
         """
         s = self._state
         if sort:
+            last = float(self._progress[step.LAST])
             if self.problem.planes:
-                self.live = ghosts.leave(s, self.problem.planes, self.live, self.threads)
+                self.live = ghosts.leave(s, self.problem.planes, self.live, last, self.threads)
+            if self._has.birth:
+                self.live = births.enter(s, self.live, self.time, last, self.threads)
+                self._due = births.due(s, self.live)
             if self.live == 0:
                 raise Diverged(self.step, int(s.id[0]), "all particles have left the problem through its limit planes")
             s.rows("x_list")[:] = s.rows("x")
@@ -309,25 +315,7 @@ class Solver:
         return Frame(time=self.time, step=self.step, particles=arrays)
 
     def _energies(self) -> dict[str, float]:
-        return measures.energies(self.problem, self._state, self._velocity())
-
-    def _contact_force(self) -> Floats:
-        """Force [3] of all other bodies on the first one."""
-        s, n = self._state, self.n
-        force = np.zeros(3)
-        a = self._arrays()
-        if self._has.contact:
-            first = s.material[:n] == 0
-            force[: s.d] = (s.rows("c")[:, :n] * s.rows("mass")[0, :n] * first).sum(axis=1)
-        if len(self.problem.bodies) > 1 and not self.problem.apart:
-            across.interface_force(
-                0, self.live, a.first, a.count, a.rows, self._shape, a.x, a.y, a.z, a.s,
-                a.volume if self._mixed else a.mass, a.h, -(self.problem.dimension + 2.0), self._numbers.normal,
-                a.material, 0, self._rows_apart, force,
-            )  # fmt: skip
-        if self.problem.axisymmetric:  # of whole rings; across the axis it is none
-            force *= (0.0, TURN, 0.0)
-        return force
+        return measures.energies(self.problem, self._state, self._velocity(), self.live)
 
     def history(self) -> dict[str, float]:
         """One row of history.csv: energies, momentum, the contact force on the first material.
@@ -336,14 +324,15 @@ class Solver:
         took; kinetic + internal + contact_energy + contact_dissipated + artificial_energy - external_work stays
         constant.
         """
-        s, n = self._state, self.n
+        s, n = self._state, self.live
         energies = self._energies()
         stored = {name: energies.pop(name) for name in STORED}
+        absent = energies.pop("absent")
         momentum = np.zeros(3)
-        momentum[: s.d] = (self._velocity() * s.rows("mass")[0, :n]).sum(axis=1)
+        momentum[: s.d] = (self._velocity()[:, :n] * s.rows("mass")[0, :n]).sum(axis=1)
         if self.problem.axisymmetric:
             momentum[0] = 0.0  # of a ring
-        force = self._contact_force()
+        force = measures.contact_force(self.problem, s, self._arrays(), self._shape, self._numbers, self._rows_apart, n)
         plastic = s.rows("state")[PLASTIC_STRAIN, :n] if len(s.rows("state")) else np.zeros(1)
         return {
             "time": self.time,
@@ -355,15 +344,10 @@ class Solver:
             **stored,
             "max_plastic_strain": float(plastic.max()),
             "step": float(self.step),
-            **self._sleepers(),
+            **({"absent_energy": absent} if self._has.absent else {}),
+            **rest.columns(s.rows("still")[:, :n]),
             **probes.columns(self.problem, self._state, self.live, self._shape, self._velocity()),
         }
-
-    def _sleepers(self) -> dict[str, float]:
-        if self._resting is None:
-            return {}
-        still = self._state.rows("still")[0, : self.live]
-        return {"asleep": float(np.count_nonzero(still != rest.AWAKE)), "deep": float(np.sum(still == rest.DEEP))}
 
     def energy_report(self) -> dict[str, float]:
         """Energies at the start and now, and how far their balance is out, see `measures.report`."""
@@ -388,14 +372,16 @@ class Solver:
     def restore(self, data: dict[str, Any]) -> None:
         """Go on from a checkpoint of the same problem. ValueError when it is of another one."""
         s, n = self._state, self.n
-        for name in s.slices:
+        wanted = [name for name in s.slices if name in data or len(s.rows(name))]
+        for name in wanted:
             if name not in data or np.shape(data[name]) != s.rows(name)[:, :n].shape:
                 raise ValueError(f"the checkpoint does not fit this run: {name} is missing or has another shape")
-        for name in s.slices:
+        for name in wanted:
             s.rows(name)[:, :n] = data[name]
         for name in ("id", "material", "fixed"):
             getattr(s, name)[:n] = data[name]
         self.live = int(data["live"])
+        self._due = births.due(s, self.live)
         self._progress[:] = data["progress"]
         self._inner[:] = data.get("inner", 0.0)  # of before there were local steps
         if self.problem.body_curve is not None:

@@ -166,7 +166,8 @@ class Rows:
     state: of the laws; the others say whether: contact, correction, artificial stress, pair viscosity (heat), density
     and stress diffusion, xsph, a changing h, a changing body force, a changing wave speed, heat of contact, slip
     between bodies, normals; wall_slip: walls with friction; total-Lagrangian bodies; local steps; hoop stress of
-    a body of revolution; sleep of what is at rest.
+    a body of revolution; sleep of what is at rest; birth of particles to come; absent: whether
+    particles may be, which takes no row.
     """
 
     state: int = 0
@@ -188,6 +189,8 @@ class Rows:
     local: bool = False
     hoop: bool = False
     sleep: bool = False
+    birth: bool = False
+    absent: bool = False
 
 
 class State:
@@ -212,7 +215,7 @@ class State:
             "slip": (d + 2) * has.slip, "wall_slip": (d + 2) * has.wall_slip,
             "deformation": d * d if has.lagrangian else 0, "hourglass": HOURGLASS if has.lagrangian else 0,
             "held": 2 * d * has.local,
-            "still": int(has.sleep), "quiet": int(has.sleep), "push": 2 * d * has.sleep,
+            "still": int(has.sleep), "quiet": int(has.sleep), "push": 2 * d * has.sleep, "birth": int(has.birth),
             "state": has.state,
             "gradient": d * d, "s": (d * d if has.correction or has.hoop else 6 if solid else 3), "nearest": 1,
             "c": d if has.contact else 0, "correction": (6 if solid else 3) if has.correction else 0,

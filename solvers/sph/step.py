@@ -127,14 +127,15 @@ def advance(
     thread, threads, sync, n, offset, shape, solid, z, h, mass, nearest, line, cx, contact, mixed, correction, bx,
     artificial, h_list, h_start, density_rate, stress_rate, heat, smoothed, smoothing, body_work, wave,
     walled, image_source, image_sign, image_shift, mirrors, friction, damping, normals, by_normals, planes, wall_slip,
-    contact_heat, plain, hoop, rows_apart, reference, resting, arrays, numbers, laws, progress, until, pause, steps,
-    reach2,
+    contact_heat, plain, hoop, rows_apart, reference, resting, arrays, numbers, laws, progress, until, pause, due,
+    steps, reach2,
 ):  # fmt: skip
     """Take up to `steps` steps towards `until`, each thread for its own range; returns why it stopped.
 
     Every thread decides alike, from the same numbers. reach2: squared half skin of the list. Times are met exactly,
     except where the original program is followed: there `until` is a label, the time of the step to come (see
-    `solver`). pause: a time that is only to be passed. resting: None, or `rest.Resting`.
+    `solver`). pause: a time that is only to be passed. due: a time from which on the lists are
+    wanted anew. resting: None, or `rest.Resting`.
     """
     i0, i1 = share(n, thread, threads)
     chunk = n if threads == 1 else CHUNK
@@ -318,7 +319,7 @@ def advance(
         if bad >= 0.0:
             reason = BROKEN
             break
-        if moved > reach2:
+        if moved > reach2 or time >= due:
             reason = REBUILD
             break
     if thread == 0:
