@@ -47,7 +47,8 @@ class Soil(Section):
     """A law that the deck has no card for. c: cohesion [pressure]; phi, psi: angles [degrees]; E and nu are the deck's.
 
     match: in which test the cone of Drucker and Prager is as strong as Mohr and Coulomb's hexagon; gaps: whether
-    grain that was pulled apart must close again before it bears, None: by `cures`, where it has no cohesion.
+    grain that was pulled apart must close again before it bears, None: by `cures`, where it has no cohesion. tension:
+    the greatest mean tension [pressure], None: the cone's own, which without a friction angle has no end.
     """
 
     law: Literal["drucker_prager_soil", "mohr_coulomb"]
@@ -56,6 +57,7 @@ class Soil(Section):
     psi: Angle = 0.0
     match: Literal["compression", "extension", "plane_strain"] = "compression"
     gaps: bool | None = None
+    tension: NotNegative | None = None
 
 
 class Sph(Section):

@@ -2,6 +2,7 @@
 
 from .ghosts import Plane
 from .problem import Body, Cures, Problem
+from .setup import refuse
 from .solver import Solver
 
-__all__ = ["Body", "Cures", "Plane", "Problem", "Solver"]
+__all__ = ["Body", "Cures", "Plane", "Problem", "Solver", "refuse"]

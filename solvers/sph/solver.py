@@ -19,7 +19,7 @@ from ..frame import Frame
 from ..materials import PLASTIC_STRAIN
 from ..neighbours import Cells, NeighbourList
 from ..threads import available, run
-from . import births, blame, ghosts, local, measures, probes, reference, rest, setup, step
+from . import across, births, blame, ghosts, local, measures, probes, reference, rest, setup, step
 from .contact import contact_of
 from .problem import Cures, Problem
 from .smoothing import shape_of
@@ -268,6 +268,9 @@ class Solver:
                     cells, x, y, z, radius=radius, skin=self._skin, h=h, group=group, other=other, threads=self.threads,
                     dummy=s.dummy,
                 )  # fmt: skip
+        if self._has.interface:
+            arrays = self._arrays()
+            across.interface_speed(self.live, s.dummy, arrays.wave, self._numbers, arrays)
 
     def _relist(self, radius: float) -> None:
         """The lists beside the reference list, of particles that keep their order."""

@@ -34,6 +34,7 @@ class Arrays(NamedTuple):
     hourglass: rows of `nominal`; nominal (d*d): V P M^-1 - kappa (F - I)/2. held (2 d, m): of
     stiff bodies with local steps, see `local`. hoop: r u, see `rings`. still, quiet, push: of sleeping, see `rest`;
     push (2 d, m): the speed that a sleeper was pushed to, and its acceleration when it fell asleep.
+    interface (0 | 1, m): see `across.interface_speed`.
     """
 
     x: Any
@@ -106,6 +107,7 @@ class Arrays(NamedTuple):
     still: Any
     quiet: Any
     push: Any
+    interface: Any
 
 
 class Numbers(NamedTuple):
@@ -150,13 +152,13 @@ class Numbers(NamedTuple):
 
 @kernel
 def _permute(thread, threads, sync, numbers, spare, rows, order):
-    """numbers[k, i] = numbers[k, order[i]] for the first rows, by way of the spare array."""
+    """numbers[k, i] = numbers[k, order[i]] for the first rows, by way of a spare row of each thread."""
     r0, r1 = share(rows, thread, threads)
     for k in range(r0, r1):
         for i in range(len(order)):
-            spare[k, i] = numbers[k, order[i]]
+            spare[thread, i] = numbers[k, order[i]]
         for i in range(len(order)):
-            numbers[k, i] = spare[k, i]
+            numbers[k, i] = spare[thread, i]
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,7 +169,7 @@ class Rows:
     and stress diffusion, xsph, a changing h, a changing body force, a changing wave speed, heat of contact, slip
     between bodies, normals; wall_slip: walls with friction; total-Lagrangian bodies; local steps; hoop stress of
     a body of revolution; sleep of what is at rest; birth of particles to come; absent: whether
-    particles may be, which takes no row.
+    particles may be, which takes no row; interface: bodies much heavier and stiffer than their neighbours.
     """
 
     state: int = 0
@@ -191,6 +193,7 @@ class Rows:
     sleep: bool = False
     birth: bool = False
     absent: bool = False
+    interface: bool = False
 
 
 class State:
@@ -216,6 +219,7 @@ class State:
             "deformation": d * d if has.lagrangian else 0, "hourglass": HOURGLASS if has.lagrangian else 0,
             "held": 2 * d * has.local,
             "still": int(has.sleep), "quiet": int(has.sleep), "push": 2 * d * has.sleep, "birth": int(has.birth),
+            "interface": int(has.interface),
             "state": has.state,
             "gradient": d * d, "s": (d * d if has.correction or has.hoop else 6 if solid else 3), "nearest": 1,
             "c": d if has.contact else 0, "correction": (6 if solid else 3) if has.correction else 0,
@@ -243,7 +247,6 @@ class State:
         if width % 512 == 0:
             width += 8  # rows a multiple of 4 KiB apart would share the same cache sets
         self.numbers: Floats = np.zeros((self._rows, width))
-        self._spare: Floats = np.zeros((self.lasting, width))
         self.id, self.material, self.fixed = (np.zeros(self.dummy + 1, np.int64) for _ in range(3))
 
     def make_room(self, room: int) -> None:
@@ -270,7 +273,7 @@ class State:
     def sort(self, order: NDArray[np.int64], threads: int) -> None:
         """Put the particles into a new order; order: old places, of all or of the first."""
         n = len(order)
-        run(_permute, threads, self.numbers, self._spare, self.lasting, order)
+        run(_permute, threads, self.numbers, np.empty((threads, n)), self.lasting, order)
         for whole in (self.id, self.material, self.fixed):
             whole[:n] = whole[:n][order]
 
@@ -349,4 +352,5 @@ class State:
             still=self.row("still"),
             quiet=self.row("quiet"),
             push=self.rows("push"),
+            interface=self.rows("interface"),
         )
