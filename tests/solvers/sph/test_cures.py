@@ -144,7 +144,7 @@ def test_angular_momentum_of_isotropic_stress_is_exact(stress: float) -> None:
         problem = one_body(x, v, law=law, cures=Cures(artificial_stress=stress))
         drift.append(moment(finished(problem, 8.0)) / moment(Solver(problem)) - 1.0)
     assert abs(drift[0]) < 1e-12
-    assert 1e-10 < abs(drift[1]) < 1e-2  # as the table says: not met by solids
+    assert abs(drift[1]) > 1e-3  # of a disordered solid: the table says how much, and what cures it
 
 
 def pulled_lattice(cures: Cures, until: float = 5.0) -> tuple[float, float]:
