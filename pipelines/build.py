@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from zrno.pipelines import contact
+from zrno.pipelines import births, contact
 from zrno.pipelines.laws import initial_energy, law_of, soil_of
 from zrno.pipelines.method import Sph
 from zrno.solvers.errors import Unsupported
@@ -61,8 +61,9 @@ def particle_problem(
         for k, number in enumerate(numbers)
     ]
     bodies = contact.with_strengths(bodies, contact.law_of_contact(control, chosen))
-    if (warning := contact.unused(control, chosen)) and warning not in model.warnings:
-        model.warnings.append(warning)
+    for warning in (contact.unused(control, chosen), births.unused(control)):
+        if warning and warning not in model.warnings:
+            model.warnings.append(warning)
     sinks = any(b.bearing for b in bodies) and any(family(b.law) == "grain" for b in bodies)
     if sinks and _cures(control, chosen).correction and SINKS not in model.warnings:
         model.warnings.append(SINKS)
@@ -109,6 +110,8 @@ def particle_problem(
         transducers=_transducers(control, numbers),
         cures=_cures(control, chosen),
         local_steps=None if chosen.local_steps == "auto" else chosen.local_steps,
+        sleep=chosen.sleep,
+        birth=births.times(control, particles),
         **contact.options(control, chosen, len(bodies)),
     )
 
@@ -124,6 +127,7 @@ def _planes(control: ParticleControl) -> tuple[Plane, ...]:
     """The deck's planes xmin, xmax, ymin, ..., as far as its dimension goes."""
     given = enumerate((control.planes or [])[: 2 * control.dimension])
     planes = tuple(Plane(k // 2, 1 if k % 2 else -1, kind, position) for k, (kind, position) in given if kind)
+    planes += births.end(control)
     return (AXIS, *planes) if control.axisymmetric and AXIS not in planes else planes
 
 
@@ -211,6 +215,9 @@ def refusals(
         at = where.get(field, Place(path, 1, 1))
         missing.append(Fault(at.path, at.line, at.column, f"{message} is not computed yet", said, "a deck without it"))
     wrong += _probes_of_nothing(model, path)
+    at = where.get("birth_death", Place(path, 1, 1))
+    for message, said, expected in births.faults(model.particle_control, model.particles):
+        wrong.append(Fault(at.path, at.line, at.column, message, said, expected))
     method = method or Sph()
     wrong += _wrong_names(model, path, method)
     for number, material in sorted(model.materials.items()):
@@ -260,6 +267,5 @@ def _not_yet(c: ParticleControl) -> list[tuple[str, str, str]]:
     """What the control cards ask for and this solver does not do yet: field, what it is, what was said."""
     asked = [
         (c.kernel not in (0, 1), "kernel", "a kernel by another number than 1", f"kernel {c.kernel}"),
-        (c.birth_death > 0, "birth_death", "birth and death of particles", f"birth_death {c.birth_death}"),
     ]  # fmt: skip
     return [(field, what, said) for wanted, field, what, said in asked if wanted]

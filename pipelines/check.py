@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from zrno.pipelines.drafts import drafts
+from zrno.pipelines.method import Sph
 from zrno.pipelines.prepare import check_decks
 from zrno.pipelines.scene import SUFFIXES
 from zrno.pipelines.scene import load as load_scene
@@ -30,7 +31,7 @@ def check(paths: Sequence[Path], *, allow_outside: bool = False) -> list[dict[st
         if path.suffix.lower() in SUFFIXES:
             rows += _scene(path, allow_outside)
         else:
-            rows.append(_file(path, allow_outside, paired={".mcm", ".dat"} <= suffixes))
+            rows.append(_file(path, allow_outside, None, paired={".mcm", ".dat"} <= suffixes))
     return rows
 
 
@@ -49,12 +50,12 @@ def fault_lines(rows: Sequence[dict[str, Any]]) -> list[str]:
     return [str(Fault(**fault)) for row in rows for fault in row["faults"]]
 
 
-def _file(path: Path, allow_outside: bool, *, paired: bool) -> dict[str, Any]:
+def _file(path: Path, allow_outside: bool, method: Sph | None, *, paired: bool) -> dict[str, Any]:
     try:
         model = read(path, paired=paired, allow_outside=allow_outside)
     except InputError as error:
         return _row(path, path.suffix.lstrip("."), error.faults)
-    return _sound(path, model)
+    return _sound(path, model, method, paired=paired)
 
 
 def _scene(path: Path, allow_outside: bool) -> list[dict[str, Any]]:
@@ -76,12 +77,12 @@ def _scene(path: Path, allow_outside: bool) -> list[dict[str, Any]]:
         row["faults"] += map(asdict, error.faults)
         return [row]
     made = {path.parent / mesh.target for mesh in scene.meshes}
-    rows = [row, *(_file(deck, allow_outside, paired=paired) for deck in decks if deck not in made)]
+    rows = [row, *(_file(deck, allow_outside, scene.sph, paired=paired) for deck in decks if deck not in made)]
     try:
         with drafts(scene, path.parent, publishing=False, allow_outside=allow_outside) as found:
             for draft in found:
                 model = draft.read(paired=paired)
-                rows.append(_sound(draft.target, model, draft.places(model)))
+                rows.append(_sound(draft.target, model, scene.sph, draft.places(model), paired=paired))
                 rows[-1]["warnings"] += [
                     f"dropped: {i['count']} {i['what']} - {i['where']}" for i in draft.result["dropped"]
                 ]
@@ -92,16 +93,24 @@ def _scene(path: Path, allow_outside: bool) -> list[dict[str, Any]]:
     return rows
 
 
-def _sound(path: Path, model: Model, places: Mapping[str, Place] | None = None) -> dict[str, Any]:
-    """The row of a file that can be read. places: see `build.refusals`."""
+def _sound(
+    path: Path, model: Model, method: Sph | None, places: Mapping[str, Place] | None = None, *, paired: bool = False
+) -> dict[str, Any]:
+    """The row of a file that can be read. method: of the scene; places: see `build.refusals`."""
     row = _row(path, model.format)
     row["warnings"] += model.warnings
     if model.particle_control is not None:
-        from zrno.pipelines.build import refusals
+        from zrno.pipelines.build import particle_problem, refusals
+        from zrno.solvers.sph import refuse
 
-        wrong, missing = refusals(model, str(path), places)
+        wrong, missing = refusals(model, str(path), places, method)
         row["faults"] += map(asdict, sorted(wrong))
         row["warnings"] += map(_not_yet, sorted(missing))
+        if not wrong and not missing and not paired:
+            try:
+                refuse(particle_problem(model, str(path), method=method))
+            except ValueError as error:
+                row["warnings"].append(f"{path}: cannot be run: {error}")
     if model.fem_control is not None:
         from zrno.pipelines.build_fem import refusals as of_structure
 

@@ -51,9 +51,14 @@ def soil_of(material: Material, said: Soil, *, automatic: bool = True) -> Law:
         raise ValueError(f"a soil takes E and nu of an elastic material, this one is {material.law}")
     young, poisson = material.parameters["E"], material.parameters["nu"]
     if said.law == "mohr_coulomb":
+        if said.tension is not None:
+            raise ValueError("a cut-off of tension is for drucker_prager_soil")
         return laws.mohr_coulomb(young, poisson, said.c, said.phi, said.psi)
     gaps = automatic and said.c == 0.0 if said.gaps is None else said.gaps
-    return laws.drucker_prager_soil(young, poisson, said.c, said.phi, said.psi, match=said.match, gaps=gaps)
+    tension = -math.inf if said.tension is None else -3.0 * said.tension  # I, compression positive
+    return laws.drucker_prager_soil(
+        young, poisson, said.c, said.phi, said.psi, match=said.match, gaps=gaps, tension=tension
+    )
 
 
 def initial_energy(eos: Eos | None, density: float) -> float:

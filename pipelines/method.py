@@ -47,7 +47,8 @@ class Soil(Section):
     """A law that the deck has no card for. c: cohesion [pressure]; phi, psi: angles [degrees]; E and nu are the deck's.
 
     match: in which test the cone of Drucker and Prager is as strong as Mohr and Coulomb's hexagon; gaps: whether
-    grain that was pulled apart must close again before it bears, None: by `cures`, where it has no cohesion.
+    grain that was pulled apart must close again before it bears, None: by `cures`, where it has no cohesion. tension:
+    the greatest mean tension [pressure], None: the cone's own, which without a friction angle has no end.
     """
 
     law: Literal["drucker_prager_soil", "mohr_coulomb"]
@@ -56,6 +57,7 @@ class Soil(Section):
     psi: Angle = 0.0
     match: Literal["compression", "extension", "plane_strain"] = "compression"
     gaps: bool | None = None
+    tension: NotNegative | None = None
 
 
 class Sph(Section):
@@ -66,6 +68,7 @@ class Sph(Section):
     z, linear between them, in place of the deck's. laws: by the name of the deck's material, in place of the elastic
     one there. bearing: names of materials whose particles, all held, bear the stress of what leans on them.
     local_steps: stiff bodies take several steps within one of the others; auto: where that goes and is worth while.
+    sleep: what moves slower than this part of sqrt(g h) for a time is held, and not computed, until it is pushed.
     """
 
     kernel: Literal["cubic", "quintic", "lucy", "gaussian", "wendland_c2", "wendland_c4"] = "cubic"
@@ -84,6 +87,7 @@ class Sph(Section):
     laws: dict[str, Soil] = Field(default_factory=dict)
     bearing: list[str] = Field(default_factory=list)
     local_steps: bool | Literal["auto"] = False
+    sleep: Part = 0.0
 
 
 def of_options(options: Mapping[str, Any]) -> Sph:

@@ -233,8 +233,9 @@ def test_a_scene_of_bad_input_writes_no_deck(
 @pytest.mark.parametrize(
     ("change", "words", "message"),
     [
-        (("spacing: 0.25", "set: {birth_death: {option: 1, particles: [1, 2]}}"), [],
-         "scene.yaml:1:99: error: birth and death of particles is not computed yet (birth_death 1)"),
+        (("spacing: 0.25",
+          "spacing: 0.25, set: {birth_death: {option: 2, particles: [0, 0], death_plane: [0, 0, 0, 3]}}"),
+         [], "scene.yaml:1:114: error: no such orientation of the plane of death"),
         (("decks: [", "coupling: {contact: pinball}\ndecks: ["), [],
          "scene.yaml:2:1: error: coupling is of grain and structure, and this scene has one deck"),
         (("", ""), ["--set", "sph.kernel=cubc"], "--set:1:12: error: sph.kernel has a wrong value (cubc)"),

@@ -3,6 +3,7 @@
 from . import measures
 from .ghosts import Plane
 from .problem import Body, Cures, Problem
+from .setup import refuse
 from .solver import Solver
 
-__all__ = ["Body", "Cures", "Plane", "Problem", "Solver", "measures"]
+__all__ = ["Body", "Cures", "Plane", "Problem", "Solver", "measures", "refuse"]

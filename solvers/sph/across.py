@@ -139,6 +139,28 @@ def pair_normal(i, j, z, dx, dy, dz, arrays):
 
 
 @kernel
+def interface_speed(live, dummy, wave, numbers, arrays):
+    """Keeps in `interface` the speed by which stress of other bodies moves each of the first `live` particles.
+
+    A light particle beside a heavy stiff one is moved by the mean of both moduli over its own density, faster than its
+    own waves go: it is that which limits the step there. wave: None, or the row of speeds now.
+    """
+    for i in range(live):
+        own = wave[i] if wave is not None else numbers.wave[arrays.material[i]]
+        own *= own * arrays.density[i]
+        most = 0.0
+        for k in range(arrays.first[i], arrays.first[i] + arrays.count[i]):
+            j = arrays.rows[k]
+            if j == dummy or arrays.material[j] == arrays.material[i] or numbers.wall[arrays.material[j]] > 0.0:
+                continue
+            other = numbers.wave[arrays.material[j]]
+            if wave is not None and j < live:
+                other = wave[j]
+            most = max(most, 0.5 * (own + arrays.density[j] * other * other))
+        arrays.interface[0, i] = math.sqrt(most / arrays.density[i])
+
+
+@kernel
 def interface_force(
     i0,
     i1,

@@ -180,10 +180,10 @@ def _periodic(planes: tuple[Plane, ...], axis: int) -> tuple[float | None, float
     return low, high
 
 
-def leave(s: State, planes: tuple[Plane, ...], live: int, threads: int) -> int:
+def leave(s: State, planes: tuple[Plane, ...], live: int, last: float, threads: int) -> int:
     """Bring particles that left a periodic box back, and put those beyond a limit behind the others.
 
-    Returns how many are left of the `live` ones.
+    Those keep the velocity that they left with. last: the step before. Returns how many are left of the `live` ones.
     """
     names = ("x", "x_half", "x_start")
     moving = [np.stack([s.rows(name)[axis] for name in names]) for axis in range(s.d)]
@@ -194,7 +194,10 @@ def leave(s: State, planes: tuple[Plane, ...], live: int, threads: int) -> int:
     out = beyond_limit(planes, s.rows("x")[:, :live])
     if np.any(out):
         s.sort(np.concatenate((np.flatnonzero(~out), np.flatnonzero(out))), threads)
-    return live - int(np.count_nonzero(out))
+    left = live - int(np.count_nonzero(out))
+    s.rows("u")[:, left:live] += 0.5 * last * s.rows("a")[:, left:live]
+    s.rows("a")[:, left:live] = 0.0
+    return left
 
 
 def place_images(s: State, planes: tuple[Plane, ...], live: int, reach: float) -> Images:

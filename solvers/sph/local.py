@@ -53,6 +53,7 @@ def classes(p: Problem, wave: Floats, *, xsph: bool) -> NDArray[np.bool_] | None
         "dynamic relaxation": p.relaxation != 1.0,
         "base acceleration by curve": p.body_curve is not None,
         "XSPH": xsph,
+        "births": p.birth is not None,
         "walls that bear their neighbours' stress": any(b.bearing for b in p.bodies),
         "a structure": p.driven is not None or p.facets is not None,
     }

@@ -1,4 +1,4 @@
-"""What a state amounts to: the arrays of a frame, and energies."""
+"""What a state amounts to: the arrays of a frame, energies, the force between bodies."""
 
 from __future__ import annotations
 
@@ -8,10 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..materials import PLASTIC_STRAIN
+from . import across
 from .particle import DRIVEN
 from .problem import Problem
 from .rings import TURN
-from .state import Floats, State
+from .smoothing import Shape
+from .state import Arrays, Floats, Numbers, State
 
 
 def particles(p: Problem, s: State, velocity: Floats, live: int) -> dict[str, Floats | NDArray[np.int64]]:
@@ -57,23 +59,36 @@ def particles(p: Problem, s: State, velocity: Floats, live: int) -> dict[str, Fl
     }
 
 
-def energies(p: Problem, s: State, velocity: Floats, given: float) -> dict[str, float]:
+def energies(p: Problem, s: State, velocity: Floats, live: int, given: float = 0.0) -> dict[str, float]:
     """Kinetic, internal (with the dissipated), dissipated, external work, stored by contact and artificial stress, and
-    what friction and dashpots of the contact took. given: work of what drives particles, which have no weight.
+    what friction and dashpots of the contact took, of the first `live` particles; absent: the total of the others.
+    given: work of what drives particles, which have no weight.
     """
-    n = s.n
-    mass = np.where(s.fixed[:n] & DRIVEN, 0.0, s.rows("mass")[0, :n])
-    moved = s.rows("x")[:, :n] - s.rows("x_start")[:, :n]
-    contact, artificial, body = s.rows("contact_work"), s.rows("artificial_work"), s.rows("body_work")
-    heat = float(np.sum(s.rows("contact_heat")[:, :n]))
-    external = float(np.sum(mass * (np.array(p.body_force[: s.d]) @ moved)))
+    there = _energies(p, s, velocity, 0, live)
+    there["external_work"] += given
+    return there | {"absent": total(_energies(p, s, velocity, live, s.n)) if live < s.n else 0.0}
+
+
+def _energies(p: Problem, s: State, velocity: Floats, i0: int, i1: int) -> dict[str, float]:
+    """Of the particles i0..i1."""
+    mass = s.rows("mass")[0, i0:i1]
+    free = np.where(s.fixed[i0:i1] & DRIVEN, 0.0, mass)
+    moved = s.rows("x")[:, i0:i1] - s.rows("x_start")[:, i0:i1]
+
+    def sum_of(name: str) -> float:
+        return float(np.sum(s.rows(name)[:, i0:i1]))
+
+    heat = sum_of("contact_heat")
+    external = float(np.sum(free * (np.array(p.body_force[: s.d]) @ moved)))
+    if len(s.rows("body_work")):
+        external = float(np.sum(s.rows("body_work")[0, i0:i1][free > 0.0]))
     return {
-        "kinetic": 0.5 * float(np.sum(mass * np.sum(velocity**2, axis=0))),
-        "internal": float(np.sum(s.rows("mass")[0, :n] * s.rows("energy")[0, :n])),
-        "dissipated": float(np.sum(s.rows("mass")[0, :n] * s.rows("dissipated")[0, :n])),
-        "external_work": given + (float(np.sum(body[0, :n][mass > 0.0])) if len(body) else external),
-        "contact_energy": -float(np.sum(contact[0, :n])) - heat if len(contact) else 0.0,
-        "artificial_energy": -float(np.sum(artificial[0, :n])) if len(artificial) else 0.0,
+        "kinetic": 0.5 * float(np.sum(free * np.sum(velocity[:, i0:i1] ** 2, axis=0))),
+        "internal": float(np.sum(mass * s.rows("energy")[0, i0:i1])),
+        "dissipated": float(np.sum(mass * s.rows("dissipated")[0, i0:i1])),
+        "external_work": external,
+        "contact_energy": -sum_of("contact_work") - heat if len(s.rows("contact_work")) else 0.0,
+        "artificial_energy": -sum_of("artificial_work"),
         "contact_dissipated": heat,
     }
 
@@ -81,7 +96,7 @@ def energies(p: Problem, s: State, velocity: Floats, given: float) -> dict[str, 
 def total(energies: dict[str, float]) -> float:
     """What stays constant."""
     stored = energies["contact_energy"] + energies["contact_dissipated"] + energies["artificial_energy"]
-    return energies["kinetic"] + energies["internal"] + stored - energies["external_work"]
+    return energies["kinetic"] + energies["internal"] + stored - energies["external_work"] + energies.get("absent", 0.0)
 
 
 def report(start: dict[str, float], now: dict[str, float]) -> dict[str, float]:
@@ -99,3 +114,23 @@ def report(start: dict[str, float], now: dict[str, float]) -> dict[str, float]:
         "dissipated": now["dissipated"],
         "balance_error": abs(total(now) - total(start)) / scale,
     }
+
+
+def contact_force(
+    p: Problem, s: State, arrays: Arrays, shape: Shape, numbers: Numbers, rows_apart: bool | None, live: int
+) -> Floats:
+    """Force [3] of all other bodies on the first one."""
+    force = np.zeros(3)
+    contact = s.rows("c")[:, :live]
+    if len(contact):
+        first = s.material[:live] == 0
+        force[: s.d] = (contact * s.rows("mass")[0, :live] * first).sum(axis=1)
+    if len(p.bodies) > 1 and not p.apart:
+        across.interface_force(
+            0, live, arrays.first, arrays.count, arrays.rows, shape, arrays.x, arrays.y, arrays.z, arrays.s,
+            arrays.volume if numbers.mixed else arrays.mass, arrays.h, -(p.dimension + 2.0), numbers.normal,
+            arrays.material, 0, rows_apart, force,
+        )  # fmt: skip
+    if p.axisymmetric:  # of whole rings; across the axis it is none
+        force *= (0.0, TURN, 0.0)
+    return force

@@ -367,6 +367,8 @@ def critical_step(i0, i1, z, wave, numbers, arrays):
         c = numbers.wave[arrays.material[i]]
         if wave is not None and c > 0.0:
             c = wave[i]
+        if arrays.interface.shape[0] > 0:
+            c = max(c, arrays.interface[0, i])
         speed2 = arrays.u[i] ** 2 + arrays.v[i] ** 2
         if z is not None:
             speed2 += arrays.w[i] ** 2

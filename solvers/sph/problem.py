@@ -84,8 +84,10 @@ class Problem:
     between bodies act along the normals of the contact: particles then slide over a coarse wall as over a smooth one
     (their centres turn nothing exactly). local_steps: stiff bodies take several steps within one of the others
     (`local`); None: where that goes and is worth while. axisymmetric: a plane problem whose x is the distance from the
-    axis y; masses are those of whole rings (`rings`). driven: (n,) particles whose velocity is given from outside, as
-    nodes of a structure (`driving`); facets: the surface of a structure that they touch (`facing`).
+    axis y; masses are those of whole rings (`rings`). sleep: what moves slower than this part of sqrt(g h) for a time
+    is held until it is pushed (`rest`), 0 for none. birth: (n,) times before which a particle only goes straight on
+    with its velocity (`births`); 0: from the start; infinite: never. driven: (n,) particles whose velocity is given
+    from outside, as nodes of a structure (`driving`); facets: the surface of a structure that they touch (`facing`).
     """
 
     dimension: int
@@ -127,6 +129,8 @@ class Problem:
     axisymmetric: bool = False
     driven: NDArray[np.bool_] | None = None
     facets: Facets | None = None
+    sleep: float = 0.0
+    birth: Floats | None = None
 
     def __post_init__(self) -> None:
         n = len(self.x)
@@ -165,8 +169,22 @@ class Problem:
             self._check_revolution()
         if self.driven is not None and not self.apart and self.cures.artificial_stress > 0.0:
             raise ValueError("artificial stress between grain and structure needs contact that keeps them apart")
+        if self.birth is not None:
+            self._check_births()
         if self.body.min() < 0 or self.body.max() >= len(self.bodies):
             raise ValueError("a particle's body is not among the bodies")
+
+    def _check_births(self) -> None:
+        """Raises ValueError for births that cannot be."""
+        assert self.birth is not None
+        if self.birth.shape != self.mass.shape or not np.all(self.birth >= 0.0):
+            raise ValueError("every particle needs a time of birth, which is not negative")
+        if np.all(self.birth > 0.0):
+            raise ValueError("all particles are born later: a run begins with one at least")
+        if any(b.lagrangian for b in self.bodies):
+            raise ValueError("a total-Lagrangian body has the neighbours of its start: no particle is born later")
+        if self.original:
+            raise ValueError("the original program's arithmetic has no births")
 
     def _check_revolution(self) -> None:
         """Raises ValueError for what a body of revolution does not have."""

@@ -6,14 +6,27 @@ import numpy as np
 
 from ..materials import constant_wave, sound_speed, state_rows
 from ..neighbours import FAR
-from .contact import Contact
+from . import local, reference, rest
+from .contact import Contact, contact_of
 from .facing import slip_rows
+from .ghosts import LIMIT
 from .particle import DRIVEN
 from .problem import STEP_OPTIONS, Cures, Problem
-from .smoothing import Shape, normaliser, value_at
+from .smoothing import Shape, normaliser, shape_of, value_at
 from .state import Numbers, Rows, State
 
+UNEQUAL = 3.0  # times its own waves' speed, that a body is moved by a neighbour of another body
 IMAGE = 0.25  # of h: a particle nearer to its image than this shortens the step no further
+
+
+def refuse(p: Problem) -> None:
+    """ValueError for what a solver refuses of a problem, without the cost of setting one up."""
+    shape = shape_of(p.kernel, p.dimension)
+    wave = numbers_of(p, contact_of(p, shape), shape, mirrors=False).wave
+    local.classes(p, wave, xsph=p.cures.xsph > 0.0)
+    rest.resting(p, wave)
+    if any(b.lagrangian for b in p.bodies):
+        reference.check(p)
 
 
 def uniform_h(p: Problem) -> bool:
@@ -54,7 +67,21 @@ def rows_of(p: Problem, contact: Contact, cures: Cures, *, local: bool) -> Rows:
         hoop=p.axisymmetric,
         driven=p.driven is not None,
         face_slip=slip_rows(p.dimension) if contact.rubs else 0,
+        sleep=p.sleep > 0.0,
+        birth=p.birth is not None,
+        interface=_unequal(p),
+        absent=p.birth is not None or any(plane.kind == LIMIT for plane in p.planes),
     )
+
+
+def _unequal(p: Problem) -> bool:
+    """Whether a body in kernel contact with another is moved by it much faster than by its own waves."""
+    if len(p.bodies) < 2 or p.apart or p.original or any(b.lagrangian for b in p.bodies):
+        return False
+    density = np.array([b.density for b in p.bodies])
+    modulus = density * np.array([sound_speed(b.law, b.density) for b in p.bodies]) ** 2
+    mean = 0.5 * np.add.outer(modulus, modulus)
+    return bool(np.any(mean > UNEQUAL**2 * modulus))  # over the density of the body in the column
 
 
 def numbers_of(p: Problem, contact: Contact, shape: Shape, *, mirrors: bool) -> Numbers:
@@ -126,6 +153,8 @@ def fill(s: State, p: Problem, numbers: Numbers, has: Rows, shape: Shape) -> Non
         s.fixed[:n][p.driven] = DRIVEN | 7
     if has.changing_h:
         s.rows("h_start")[0, :n] = p.h * p.density ** (1.0 / p.dimension)
+    if p.birth is not None:
+        s.rows("birth")[0, :n] = p.birth
     if has.wave:
         s.rows("wave")[0, :n] = numbers.wave[p.body]
     if has.correction:  # the unit matrix: the first sums of forces come before the first strain
@@ -151,6 +180,8 @@ def described(p: Problem, contact: Contact, cures: Cures, has: Rows, threads: in
         f"dynamic relaxation {p.relaxation:g}": p.relaxation != 1.0,
         f"{len(p.planes)} boundary plane(s)": bool(p.planes),
         "base acceleration by curve": has.body_work,
+        "births": has.birth,
+        f"sleep below {p.sleep:g} sqrt(g h)": has.sleep,
         "as the original program": p.original,
         f"{0 if p.driven is None else int(p.driven.sum())} particles driven by a structure": p.driven is not None,
     }

@@ -19,13 +19,12 @@ from ..frame import Frame
 from ..materials import PLASTIC_STRAIN
 from ..neighbours import Cells, NeighbourList
 from ..threads import available, run
-from . import across, blame, ghosts, local, measures, probes, reference, setup, step
+from . import across, births, blame, ghosts, local, measures, probes, reference, rest, setup, step
 from .contact import contact_of
 from .driving import Driven
 from .facing import Surface
 from .particle import DRIVEN
 from .problem import Cures, Problem
-from .rings import TURN
 from .smoothing import shape_of
 from .state import Arrays, State
 
@@ -61,6 +60,7 @@ class Solver:
         self._mirrors = None if problem.original else ghosts.mirrors(problem.planes)
         self._numbers = setup.numbers_of(problem, self._contact, self._shape, mirrors=self._mirrors is not None)
         self._stiff = local.classes(problem, self._numbers.wave, xsph=cures.xsph > 0.0)
+        self._resting = rest.resting(problem, self._numbers.wave)
         self._inner = np.zeros(local.INNER)
         self._slow = n if self._stiff is None else int(np.count_nonzero(~self._stiff[problem.body]))
         has = self._has = setup.rows_of(problem, self._contact, cures, local=self._stiff is not None)
@@ -74,6 +74,9 @@ class Solver:
         self._laws = tuple(b.law for b in problem.bodies)
         setup.fill(self._state, problem, self._numbers, has, self._shape)
         self._spare = 0.5 * self._skin  # how far particles go before the next list
+        if has.birth:
+            self.live = births.set_apart(self._state, self.threads)
+        self._due = births.due(self._state, self.live)
         self._reference = self._make_reference() if has.lagrangian else None
         self._rebuild()
         self._progress[step.PENDING] = 1.0
@@ -191,8 +194,8 @@ class Solver:
             self._contact.walls, a.wall_slip if has.wall_slip else None, a.contact_heat,
             True if self._plain else None, a.hoop, self._rows_apart, self._reference, True if has.driven else None,
             None if self._contact.surface is None else self._contact.surface.faces(),
-            a.face_slip if has.face_slip else None, a, self._numbers, self._laws,
-            self._progress, float(until), float(pause), steps, self._spare**2,
+            a.face_slip if has.face_slip else None, self._resting, a, self._numbers, self._laws,
+            self._progress, float(until), float(pause), self._due, steps, self._spare**2,
         )  # fmt: skip
         return int(found[0])
 
@@ -225,8 +228,12 @@ class Solver:
         """
         s = self._state
         if sort:
+            last = float(self._progress[step.LAST])
             if self.problem.planes:
-                self.live = ghosts.leave(s, self.problem.planes, self.live, self.threads)
+                self.live = ghosts.leave(s, self.problem.planes, self.live, last, self.threads)
+            if self._has.birth:
+                self.live = births.enter(s, self.live, self.time, last, self.threads)
+                self._due = births.due(s, self.live)
             if self.live == 0:
                 raise Diverged(self.step, int(s.id[0]), "all particles have left the problem through its limit planes")
             s.rows("x_list")[:] = s.rows("x")
@@ -269,6 +276,9 @@ class Solver:
                     cells, x, y, z, radius=radius, skin=self._skin, h=h, group=group, other=other, threads=self.threads,
                     dummy=s.dummy,
                 )  # fmt: skip
+        if self._has.interface:
+            arrays = self._arrays()
+            across.interface_speed(self.live, s.dummy, arrays.wave, self._numbers, arrays)
 
     def _face(self, n: int) -> None:
         """List the facets near each particle."""
@@ -315,6 +325,8 @@ class Solver:
             u, a, c, held = (s.rows(name)[:, self._slow : n] for name in ("u", "a", "c", "held"))
             velocity[:, self._slow :] = local.velocity(u, a, c, held, float(self._progress[step.LAST]), self._inner)
         driven = s.fixed[:n] & DRIVEN > 0
+        if self._resting is not None:
+            velocity[:, s.rows("still")[0, :n] != rest.AWAKE] = 0.0
         for k in range(s.d):
             velocity[k, (s.fixed[:n] >> k) & 1 == 1] = 0.0
             velocity[k, driven] = s.rows("u")[k, :n][driven]
@@ -355,28 +367,10 @@ class Solver:
 
     def energies(self) -> dict[str, float]:
         """Energies now, see `measures.energies`."""
-        found = measures.energies(self.problem, self._state, self._velocity(), self.given_work)
+        found = measures.energies(self.problem, self._state, self._velocity(), self.live, self.given_work)
         if self._contact.surface is not None:  # what facets give is no particle's work
             found["contact_energy"] += self.given_work
         return found
-
-    def _contact_force(self) -> Floats:
-        """Force [3] of all other bodies on the first one."""
-        s, n = self._state, self.n
-        force = np.zeros(3)
-        a = self._arrays()
-        if self._has.contact:
-            first = s.material[:n] == 0
-            force[: s.d] = (s.rows("c")[:, :n] * s.rows("mass")[0, :n] * first).sum(axis=1)
-        if len(self.problem.bodies) > 1 and not self.problem.apart:
-            across.interface_force(
-                0, self.live, a.first, a.count, a.rows, self._shape, a.x, a.y, a.z, a.s,
-                a.volume if self._mixed else a.mass, a.h, -(self.problem.dimension + 2.0), self._numbers.normal,
-                a.material, 0, self._rows_apart, force,
-            )  # fmt: skip
-        if self.problem.axisymmetric:  # of whole rings; across the axis it is none
-            force *= (0.0, TURN, 0.0)
-        return force
 
     def history(self) -> dict[str, float]:
         """One row of history.csv: energies, momentum, the contact force on the first material.
@@ -385,15 +379,16 @@ class Solver:
         took; kinetic + internal + contact_energy + contact_dissipated + artificial_energy - external_work stays
         constant.
         """
-        s, n = self._state, self.n
+        s, n = self._state, self.live
         energies = self.energies()
         stored = {name: energies.pop(name) for name in STORED}
+        absent = energies.pop("absent")
         momentum = np.zeros(3)
         moving = s.fixed[:n] & DRIVEN == 0
-        momentum[: s.d] = (self._velocity() * s.rows("mass")[0, :n])[:, moving].sum(axis=1)
+        momentum[: s.d] = (self._velocity()[:, :n] * s.rows("mass")[0, :n])[:, moving].sum(axis=1)
         if self.problem.axisymmetric:
             momentum[0] = 0.0  # of a ring
-        force = self._contact_force()
+        force = measures.contact_force(self.problem, s, self._arrays(), self._shape, self._numbers, self._rows_apart, n)
         plastic = s.rows("state")[PLASTIC_STRAIN, :n] if len(s.rows("state")) else np.zeros(1)
         return {
             "time": self.time,
@@ -401,10 +396,12 @@ class Solver:
             **energies,
             **dict(zip(("momentum_x", "momentum_y", "momentum_z"), momentum.tolist(), strict=True)),
             **dict(zip(("contact_force_x", "contact_force_y", "contact_force_z"), force.tolist(), strict=True)),
-            "active": float(self.live - self.n + np.count_nonzero(moving)),
+            "active": float(np.count_nonzero(moving)),
             **stored,
             "max_plastic_strain": float(plastic.max()),
             "step": float(self.step),
+            **({"absent_energy": absent} if self._has.absent else {}),
+            **rest.columns(s.rows("still")[:, :n]),
             **probes.columns(self.problem, self._state, self.live, self._shape, self._velocity()),
         }
 
@@ -433,14 +430,16 @@ class Solver:
     def restore(self, data: dict[str, Any]) -> None:
         """Go on from a checkpoint of the same problem. ValueError when it is of another one."""
         s, n = self._state, self.n
-        for name in s.slices:
+        wanted = [name for name in s.slices if name in data or len(s.rows(name))]
+        for name in wanted:
             if name not in data or np.shape(data[name]) != s.rows(name)[:, :n].shape:
                 raise ValueError(f"the checkpoint does not fit this run: {name} is missing or has another shape")
-        for name in s.slices:
+        for name in wanted:
             s.rows(name)[:, :n] = data[name]
         for name in ("id", "material", "fixed"):
             getattr(s, name)[:n] = data[name]
         self.live = int(data["live"])
+        self._due = births.due(s, self.live)
         self._progress[:] = data["progress"]
         self._inner[:] = data["inner"]
         self._given = float(data["given"])

@@ -32,8 +32,10 @@ class Arrays(NamedTuple):
     slid, the load of friction (d + 2, m); wall_slip: the same for each wall; colour: normal to other bodies, mobilised:
     traction by normal force, (d, m) each (see `slip`). Of total-Lagrangian bodies: deformation (d*d): F - I;
     hourglass: rows of `nominal`; nominal (d*d): V P M^-1 - kappa (F - I)/2. held (2 d, m): of
-    stiff bodies with local steps, see `local`. hoop: r u, see `rings`. impulse, thrust (d, m): of what is driven, see
-    `driving`; face_slip: friction on facets, see `facing`.
+    stiff bodies with local steps, see `local`. hoop: r u, see `rings`. still, quiet, push: of sleeping, see `rest`;
+    push (2 d, m): the speed that a sleeper was pushed to, and its acceleration when it fell asleep.
+    interface (0 | 1, m): see `across.interface_speed`. impulse, thrust (d, m): of what is driven, see `driving`;
+    face_slip: friction on facets, see `facing`.
     """
 
     x: Any
@@ -106,6 +108,10 @@ class Arrays(NamedTuple):
     impulse: Any
     thrust: Any
     face_slip: Any
+    still: Any
+    quiet: Any
+    push: Any
+    interface: Any
 
 
 class Numbers(NamedTuple):
@@ -150,13 +156,13 @@ class Numbers(NamedTuple):
 
 @kernel
 def _permute(thread, threads, sync, numbers, spare, rows, order):
-    """numbers[k, i] = numbers[k, order[i]] for the first rows, by way of the spare array."""
+    """numbers[k, i] = numbers[k, order[i]] for the first rows, by way of a spare row of each thread."""
     r0, r1 = share(rows, thread, threads)
     for k in range(r0, r1):
         for i in range(len(order)):
-            spare[k, i] = numbers[k, order[i]]
+            spare[thread, i] = numbers[k, order[i]]
         for i in range(len(order)):
-            numbers[k, i] = spare[k, i]
+            numbers[k, i] = spare[thread, i]
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,7 +172,9 @@ class Rows:
     state: of the laws; the others say whether: contact, correction, artificial stress, pair viscosity (heat), density
     and stress diffusion, xsph, a changing h, a changing body force, a changing wave speed, heat of contact, slip
     between bodies, normals; wall_slip: walls with friction; total-Lagrangian bodies; local steps; hoop stress of
-    a body of revolution; driven particles; face_slip: rows of friction on facets.
+    a body of revolution; sleep of what is at rest; birth of particles to come; absent: whether
+    particles may be, which takes no row; interface: bodies much heavier and stiffer than their neighbours; driven
+    particles; face_slip: rows of friction on facets.
     """
 
     state: int = 0
@@ -189,6 +197,10 @@ class Rows:
     hoop: bool = False
     driven: bool = False
     face_slip: int = 0
+    sleep: bool = False
+    birth: bool = False
+    absent: bool = False
+    interface: bool = False
 
 
 class State:
@@ -213,6 +225,8 @@ class State:
             "slip": (d + 2) * has.slip, "wall_slip": (d + 2) * has.wall_slip,
             "deformation": d * d if has.lagrangian else 0, "hourglass": HOURGLASS if has.lagrangian else 0,
             "held": 2 * d * has.local, "impulse": d * has.driven, "face_slip": has.face_slip,
+            "still": int(has.sleep), "quiet": int(has.sleep), "push": 2 * d * has.sleep, "birth": int(has.birth),
+            "interface": int(has.interface),
             "state": has.state,
             "gradient": d * d, "s": (d * d if has.correction or has.hoop else 6 if solid else 3), "nearest": 1,
             "c": d if has.contact else 0, "correction": (6 if solid else 3) if has.correction else 0,
@@ -226,7 +240,8 @@ class State:
             self.slices[name] = slice(at, at + rows)
             at += rows
         # the rows above are made anew in each step; those before them follow a sorted particle and go into a checkpoint
-        self.lasting = self.slices["state"].stop
+        # (of sleepers nothing is made anew)
+        self.lasting = at if has.sleep else self.slices["state"].stop
         self._rows = at
         self.id: NDArray[np.int64]
         self.material: NDArray[np.int64]
@@ -239,7 +254,6 @@ class State:
         if width % 512 == 0:
             width += 8  # rows a multiple of 4 KiB apart would share the same cache sets
         self.numbers: Floats = np.zeros((self._rows, width))
-        self._spare: Floats = np.zeros((self.lasting, width))
         self.id, self.material, self.fixed = (np.zeros(self.dummy + 1, np.int64) for _ in range(3))
 
     def make_room(self, room: int) -> None:
@@ -266,7 +280,7 @@ class State:
     def sort(self, order: NDArray[np.int64], threads: int) -> None:
         """Put the particles into a new order; order: old places, of all or of the first."""
         n = len(order)
-        run(_permute, threads, self.numbers, self._spare, self.lasting, order)
+        run(_permute, threads, self.numbers, np.empty((threads, n)), self.lasting, order)
         for whole in (self.id, self.material, self.fixed):
             whole[:n] = whole[:n][order]
 
@@ -345,4 +359,8 @@ class State:
             impulse=self.rows("impulse"),
             thrust=self.rows("thrust"),
             face_slip=self.rows("face_slip"),
+            still=self.row("still"),
+            quiet=self.row("quiet"),
+            push=self.rows("push"),
+            interface=self.rows("interface"),
         )

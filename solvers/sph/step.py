@@ -17,7 +17,7 @@ import numpy as np
 
 from ..jit import kernel
 from ..threads import barrier, claim, share
-from . import across, bearing, cures, driving, facing, ghosts, lagrangian, nominal, pairs, rings, slip, walls
+from . import across, bearing, cures, driving, facing, ghosts, lagrangian, nominal, pairs, rest, rings, slip, walls
 from .particle import critical_step, drift, each_law, half_work, kick
 
 # entries of `progress`, the loop's own memory
@@ -144,14 +144,15 @@ def advance(
     thread, threads, sync, n, offset, shape, solid, z, h, mass, nearest, line, cx, contact, mixed, correction, bx,
     artificial, h_list, h_start, density_rate, stress_rate, heat, smoothed, smoothing, body_work, wave,
     walled, image_source, image_sign, image_shift, mirrors, friction, damping, normals, by_normals, planes, wall_slip,
-    contact_heat, plain, hoop, rows_apart, reference, driven, faces, face_slip, arrays, numbers, laws, progress, until,
-    pause, steps, reach2,
+    contact_heat, plain, hoop, rows_apart, reference, driven, faces, face_slip, resting, arrays, numbers, laws,
+    progress, until, pause, due, steps, reach2,
 ):  # fmt: skip
     """Take up to `steps` steps towards `until`, each thread for its own range; returns why it stopped.
 
     Every thread decides alike, from the same numbers. reach2: squared half skin of the list. Times are met exactly,
     except where the original program is followed: there `until` is a label, the time of the step to come (see
-    `solver`). pause: a time that is only to be passed.
+    `solver`). pause: a time that is only to be passed. due: a time from which on the lists are
+    wanted anew. resting: None, or `rest.Resting`.
     """
     i0, i1 = share(n, thread, threads)
     chunk = n if threads == 1 else CHUNK
@@ -164,6 +165,8 @@ def advance(
     done = 0
     pending = progress[PENDING] > 0.0
     reason = PAUSED
+    if resting is not None:
+        rest.settle(i0, i1, n, cx, image_source, offset, arrays)  # the lists may be new
     barrier(sync, threads)  # all have read what the first will write
     while True:
         if pending:
@@ -179,18 +182,27 @@ def advance(
                     barrier(sync, threads)
                 c = claim(sync, taken)
                 while c < chunks:
-                    strain(
-                        c * chunk, min(n, (c + 1) * chunk), offset, image_source, shape, solid, h, line, correction,
-                        density_rate, stress_rate, plain, hoop, reference, last, arrays, numbers,
-                    )  # fmt: skip
+                    end = min(n, (c + 1) * chunk)
+                    a, b = rest.run_of(c * chunk, end, resting, rest.HELD, arrays.still)
+                    while a < b:
+                        strain(
+                            a, b, offset, image_source, shape, solid, h, line, correction, density_rate, stress_rate,
+                            plain, hoop, reference, last, arrays, numbers,
+                        )  # fmt: skip
+                        if resting is not None:
+                            rest.no_diffusion(a, b, density_rate, stress_rate, arrays)
+                        a, b = rest.run_of(b, end, resting, rest.HELD, arrays.still)
                     c = claim(sync, taken)
                 taken += chunks + threads
                 barrier(sync, threads)  # the strain of all particles needs the old volumes
             # at the very start without strain: what an equation of state makes of the first densities
-            each_law(
-                laws, 0, i0, i1, z, max(last, INSTANT), correction, density_rate, stress_rate, heat, wave, hoop,
-                arrays, numbers,
-            )  # fmt: skip
+            a, b = rest.run_of(i0, i1, resting, rest.HELD, arrays.still)
+            while a < b:
+                each_law(
+                    laws, 0, a, b, z, max(last, INSTANT), correction, density_rate, stress_rate, heat, wave, hoop,
+                    arrays, numbers,
+                )  # fmt: skip
+                a, b = rest.run_of(b, i1, resting, rest.HELD, arrays.still)
             if reference is not None:
                 arrays.reduced[thread, 3] = nominal.nominal_stress(i0, i1, z, reference, arrays)
             if hoop is not None:
@@ -227,15 +239,28 @@ def advance(
                     image_sign, arrays, numbers,
                 )  # fmt: skip
             least = np.inf
+            look = False
+            if resting is not None:
+                look = (int(progress[STEPS]) + done) % rest.LOOK == 0
+            most = rest.DEEP if look else rest.HELD
             c = claim(sync, taken)
             while c < chunks:
-                part = force(
-                    c * chunk, min(n, (c + 1) * chunk), shape, z, h, mass, nearest, line, cx, contact, mixed,
-                    correction, bx, artificial, heat, body_work, wave, friction, damping, normals, by_normals,
-                    planes, wall_slip, contact_heat, plain, hoop, rows_apart, reference, driven, faces, face_slip,
-                    last, arrays, numbers,
-                )  # fmt: skip
-                least = min(least, part)
+                end = min(n, (c + 1) * chunk)
+                at = c * chunk
+                a, b = rest.run_of(at, end, resting, most, arrays.still)
+                while a < b:
+                    if resting is not None:  # the deep are to wake into a stable step
+                        least = min(least, critical_step(at, a, z, wave, numbers, arrays))
+                        at = b
+                    part = force(
+                        a, b, shape, z, h, mass, nearest, line, cx, contact, mixed, correction, bx, artificial, heat,
+                        body_work, wave, friction, damping, normals, by_normals, planes, wall_slip, contact_heat,
+                        plain, hoop, rows_apart, reference, driven, faces, face_slip, last, arrays, numbers,
+                    )  # fmt: skip
+                    least = min(least, part)
+                    a, b = rest.run_of(b, end, resting, most, arrays.still)
+                if resting is not None:
+                    least = min(least, critical_step(at, end, z, wave, numbers, arrays))
                 c = claim(sync, taken)
             taken += chunks + threads
             arrays.reduced[thread, 2] = least
@@ -243,6 +268,15 @@ def advance(
             dt = numbers.step_factor * arrays.reduced[:threads, 2].min()
             if last > 0.0:
                 dt = min(dt, GROWTH * last)
+            if resting is not None:
+                arrays.reduced[thread, 5] = rest.wake(i0, i1, z, resting, look, last, arrays)
+                barrier(sync, threads)
+                woken = arrays.reduced[:threads, 5].max() > 0.0
+                if look:
+                    rest.fall_asleep(i0, i1, n, z, cx, resting, image_source, offset, last, arrays)
+                    barrier(sync, threads)
+                if look or woken:
+                    rest.settle(i0, i1, n, cx, image_source, offset, arrays)
             pending = False
         if done == steps or (done > 0 and time >= pause):
             break
@@ -262,7 +296,12 @@ def advance(
             if whole <= LANDING:
                 now = left / whole
                 landed = whole == 1
-        kick(i0, i1, z, cx, bx, body_work, 0.5 * (last + now), now, arrays, numbers)
+        a, b = rest.run_of(i0, i1, resting, rest.AWAKE, arrays.still)
+        while a < b:
+            kick(a, b, z, cx, bx, body_work, 0.5 * (last + now), now, arrays, numbers)
+            a, b = rest.run_of(b, i1, resting, rest.AWAKE, arrays.still)
+        if resting is not None:
+            rest.count_quiet(i0, i1, z, resting, now, arrays)
         if driven is not None:
             driving.add_impulse(i0, i1, 0.5 * now, arrays)
         if faces is not None:
@@ -284,7 +323,14 @@ def advance(
                 c = claim(sync, taken)
             taken += chunks + threads
             barrier(sync, threads)
-        moved, bad = drift(i0, i1, z, smoothed, h_start, h_list, mirrors, 0.5 * shape.support, now, arrays, numbers)
+        moved = 0.0
+        bad = -1.0
+        a, b = rest.run_of(i0, i1, resting, rest.AWAKE, arrays.still)
+        while a < b:
+            far, lost = drift(a, b, z, smoothed, h_start, h_list, mirrors, 0.5 * shape.support, now, arrays, numbers)
+            moved = max(moved, far)
+            bad = max(bad, lost)
+            a, b = rest.run_of(b, i1, resting, rest.AWAKE, arrays.still)
         arrays.reduced[thread, 0] = moved
         arrays.reduced[thread, 1] = bad
         barrier(sync, threads)
@@ -299,7 +345,7 @@ def advance(
         if bad >= 0.0:
             reason = BROKEN
             break
-        if moved > reach2:
+        if moved > reach2 or time >= due:
             reason = REBUILD
             break
     if thread == 0:

@@ -14,7 +14,7 @@ from zrno.solvers.contact import plane
 from zrno.solvers.contact.friction import Coulomb
 from zrno.solvers.materials import drucker_prager_soil
 from zrno.solvers.sph import Cures, Plane
-from zrno.solvers.sph.ghosts import SYMMETRY
+from zrno.solvers.sph.ghosts import LIMIT, SYMMETRY
 from zrno.translators import InputError, Model, read
 
 DECK = """\
@@ -45,7 +45,13 @@ MATERIAL_2 = DECK[DECK.index("    1    3       2.7") : DECK.index("       1    0
     "    1    3", "    2    3", 1
 )
 FLOOR = Wall(position=(0.0, -1.0, 0.0), normal=(0.0, 1.0, 0.0), friction=Friction(static=0.4, kinetic=0.3))
-BIRTH = f"{1:10d}{2:10d}\n"
+BIRTH = f"{1:10d}{1:10d}\n"
+
+
+def _plane(x: float, orientation: int) -> str:
+    return f"{x:20}{0.0:20}{0.0:20}{orientation:5d}\n"
+
+
 CAP = (
     "       0.7\n      0.33\n     0.003\n      0.01\n       0.5\n       0.0\n",
     "       0.7       4.0\n       0.3       0.5\n     0.003       0.1\n"
@@ -259,9 +265,47 @@ def test_local_steps(tmp_path: Path, said: object, given: bool | None) -> None:
 
 
 def test_all_refusals_are_said_and_a_mesh_is_no_deck(tmp_path: Path) -> None:
-    model = _read(tmp_path, ("   60\n\n", "   60\n    1    0    0\n"), ("      0.33", "      0.55"), ("", BIRTH))
+    model = _read(
+        tmp_path, ("   60\n\n", "   60\n    1    0    1\n"), ("      0.33", "      0.55"), ("", BIRTH + _plane(0.05, 3))
+    )
     with pytest.raises(InputError) as caught:
         particle_problem(model, "deck.mcm")
     assert [(fault.line, fault.column) for fault in caught.value.faults] == [(9, 5), (10, 1)]
     with pytest.raises(InputError, match=r"plate\.msh:1:1: error: not a particle deck \(msh\)"):
         particle_problem(Model(format="msh"), "plate.msh")
+
+
+def test_birth_and_death(tmp_path: Path) -> None:
+    """Particle 1 comes from x = 0 at 0.01 and is born at 0.05; what is below -1 in y has left."""
+    both = BIRTH + _plane(0.05, 1) + f"{0.0:20}{-1.0:20}{0.0:20}{-2:5d}\n"
+    problem = particle_problem(_read(tmp_path, ("   60\n\n", "   60\n    3    0    1\n"), ("", both)), "deck.mcm")
+    assert problem.birth is not None
+    assert problem.birth.tolist() == pytest.approx([5.0, 0.0])
+    assert problem.planes == (Plane(1, -1, LIMIT, -1.0),)
+
+
+@pytest.mark.parametrize(
+    ("card", "cards", "said"),
+    [
+        ("    1    0    1", BIRTH + _plane(0.05, -1), None),  # it is past a plane that is passed towards -x
+        ("    1    0    0", BIRTH, None),  # and so without a plane, with a warning
+        ("    1    0    1", BIRTH + _plane(-0.05, -1), "never get to the plane of birth"),
+        ("    1    0    1", BIRTH + _plane(0.05, 3), "no such orientation of the plane of birth"),
+        ("    1    0    1", BIRTH.replace("1\n", "3\n") + _plane(0.05, 1), "no such particles to be born"),
+        ("    1    0    1", BIRTH.replace("1\n", "2\n") + _plane(0.5, 1), "all particles are to be born"),
+        ("    2    0    0", BIRTH + _plane(0.05, 0), "no such orientation of the plane of death"),
+    ],
+)
+def test_births_that_are_none(tmp_path: Path, card: str, cards: str, said: str | None) -> None:
+    model = _read(tmp_path, ("   60\n\n", f"   60\n{card}\n"), ("", cards))
+    if said is None:
+        assert particle_problem(model, "deck.mcm").birth is None
+        assert any("without a plane of birth" in w for w in model.warnings) == (cards == BIRTH)
+    else:
+        with pytest.raises(InputError, match=said):
+            particle_problem(model, "deck.mcm")
+
+
+def test_sleep(tmp_path: Path) -> None:
+    assert particle_problem(_read(tmp_path), "deck.mcm").sleep == 0.0
+    assert particle_problem(_read(tmp_path), "deck.mcm", method=of_options({"sph.sleep": 0.01})).sleep == 0.01

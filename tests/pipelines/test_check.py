@@ -13,6 +13,8 @@ from zrno.translators import load_settings
 SCENE = "meshes: [{source: plate.msh, target: plate.mcm, settings: plate.yaml, spacing: 0.25}]\ndecks: [plate.mcm]\n"
 SETTINGS = "end_time: 0.1\nmaterials:\n  plate: {density: 2, E: 10, nu: 0.3}\n"
 
+OF_HALF_THE_VOLUME = "law: fluid, eos: {type: perfect_gas, gamma: 1.4, E0: 1, V0: 0.5}"
+
 
 @pytest.fixture
 def scene(tmp_path: Path, plate_msh: str) -> Path:
@@ -39,12 +41,10 @@ def test_the_decks_that_a_scene_makes_are_checked_and_nothing_is_written(scene: 
 
 
 def test_what_cannot_be_run_yet_is_a_warning_where_it_was_asked(scene: Path) -> None:
-    (scene.parent / "plate.yaml").write_text(
-        SETTINGS + "birth_death: {option: 2, particles: [1, 2], death_plane: [0, 0, 0, 1]}\n"
-    )
+    (scene.parent / "plate.yaml").write_text(SETTINGS.replace("E: 10, nu: 0.3", OF_HALF_THE_VOLUME))
     rows = check([scene])
     assert fault_lines(rows) == []
-    warning = "plate.yaml:4:14: cannot be run yet: birth and death of particles is not computed yet (birth_death 2)"
+    warning = "plate.yaml:3:28: cannot be run yet: material 1: an initial relative volume V0 of 0.5 is not computed yet"
     assert f"  warning: {warning}" in _short(scene.parent, check_text(rows))
 
 
@@ -52,18 +52,15 @@ def test_a_deck_that_cannot_be_run_yet_is_sound(scene: Path) -> None:
     from zrno.pipelines.convert import convert
 
     deck = scene.parent / "deck.mcm"
-    settings = load_settings(
-        scene.parent / "plate.yaml",
-        overrides={"birth_death": {"option": 2, "particles": [1, 2], "death_plane": [0, 0, 0, 1]}},
-    )
+    (scene.parent / "plate.yaml").write_text(SETTINGS.replace("E: 10, nu: 0.3", OF_HALF_THE_VOLUME))
+    settings = load_settings(scene.parent / "plate.yaml")
     convert([scene.parent / "plate.msh"], deck, spacing=0.5, settings=settings)
     rows = check([deck])
     assert fault_lines(rows) == []
-    line = next(i for i, text in enumerate(deck.read_text().splitlines()) if "birth_death" in text) + 2
     assert _short(scene.parent, check_text(rows)) == [
         "deck.mcm: ok",
-        f"  warning: deck.mcm:{line}:5: cannot be run yet: birth and death of particles is not computed yet "
-        "(birth_death 2)",
+        "  warning: deck.mcm:17:1: cannot be run yet: material 1: an initial relative volume V0 of 0.5 is not computed "
+        "yet",
     ]
 
 
@@ -100,3 +97,26 @@ def test_samples_are_sound_without_a_warning(tmp_path: Path) -> None:
     folder = samples.copy("two_cylinders", tmp_path / "cylinders")
     rows = check([folder / "scene.yaml"])
     assert _short(folder, check_text(rows)) == ["scene.yaml: ok", "cylinders.mcm: ok"]
+
+
+@pytest.mark.parametrize(
+    ("settings", "sph", "said"),
+    [
+        ("axisymmetric: true\n", "xsph: 0.1", "an axisymmetric run does not go with XSPH"),
+        ("axisymmetric: true\ngravity: [1, 0, 0]\n", "", "does not go with a body force across the axis"),
+        ("", "sleep: 0.01", "particles cannot sleep without a constant base acceleration"),
+        ("", "local_steps: true", "local time steps do not go together with kernel contact"),
+        (
+            "planes: {xmax: [limit, 5]}\n",
+            "total_lagrangian: true",
+            "does not go together with periodic and limit planes",
+        ),
+    ],
+)
+def test_what_does_not_go_together_is_a_warning(scene: Path, settings: str, sph: str, said: str) -> None:
+    """The solver's refusals, with the scene's own section; without it the same scene is sound."""
+    (scene.parent / "plate.yaml").write_text(SETTINGS + settings)
+    scene.write_text(SCENE + f"sph: {{{sph}}}\n")
+    rows = check([scene])
+    assert fault_lines(rows) == []
+    assert any("cannot be run" in line and said in line for line in _short(scene.parent, check_text(rows)))

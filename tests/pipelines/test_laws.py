@@ -10,9 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from zrno.pipelines.laws import initial_energy, law_of, structural_law_of
+from zrno.pipelines.laws import initial_energy, law_of, soil_of, structural_law_of
+from zrno.pipelines.method import Soil
 from zrno.solvers import materials as laws
 from zrno.solvers.errors import Unsupported
+from zrno.solvers.materials.point import Point
 from zrno.translators.laws import EQUATIONS_OF_STATE, LAWS
 from zrno.translators.model import Curve, Eos, Material
 
@@ -201,3 +203,15 @@ def test_mixed_hardening_by_a_table() -> None:
     law = built("von_mises", tables={"hardening": TABLE}, **MODULI, yield_stress=9.0, beta=0.2)
     assert isinstance(law, laws.VonMisesMixedCurve)
     assert (law.beta, law.hardening.stress.tolist()) == (0.2, [1.0, 2.0])  # type: ignore[union-attr]
+
+
+def test_a_cut_off_of_tension_of_a_scenes_soil() -> None:
+    """The greatest mean tension; pulled on all sides, clay without a friction angle bears that and no more."""
+    material = Material(1, "clay", "elastic", 2.0, MODULI)
+    clay = soil_of(material, Soil(law="drucker_prager_soil", c=1.0, phi=0.0, tension=0.5))
+    point = Point(clay)
+    point.move(np.array([[0.01, 0.01, 0.01, 0.0, 0.0, 0.0]] * 3))
+    assert point.stress[:3].tolist() == pytest.approx([0.5] * 3)
+    assert soil_of(material, Soil(law="drucker_prager_soil", phi=30.0, tension=0.5)).tension == 0.0  # the apex
+    with pytest.raises(ValueError, match="a cut-off of tension is for drucker_prager_soil"):
+        soil_of(material, Soil(law="mohr_coulomb", phi=30.0, tension=0.0))

@@ -45,17 +45,15 @@ def _two_densities(ratio: float, modulus: float, speed: float = 0.01) -> Problem
     return dataclasses.replace(problem, mass=problem.mass * density, density=density, bodies=bodies)
 
 
-def test_the_stress_of_heavy_matter_on_light_neighbours_is_caught() -> None:
-    """What fails: density and modulus both a thousandfold, in kernel contact, where the heavy body's stress accelerates
-    light particles faster than their own waves go. The run stops by name; bodies that repel do not have this.
-    """
-    with pytest.raises(Diverged):
-        finished(_two_densities(1000.0, 1e-3), 3.0)
-
-
-@pytest.mark.parametrize(("ratio", "modulus"), [(10.0, 1.0), (1000.0, 1.0), (10.0, 0.1)])
+@pytest.mark.parametrize(
+    ("ratio", "modulus"), [(10.0, 1.0), (1000.0, 1.0), (10.0, 0.1), (100.0, 0.01), (1000.0, 0.001)]
+)
 def test_neighbours_of_a_thousandfold_density(ratio: float, modulus: float) -> None:
-    """Momentum to the last digits, balance 2 %, no particle faster than the impact allows."""
+    """Momentum to the last digits, balance 2 %, no particle faster than the impact allows.
+
+    With density and modulus both a thousandfold the heavy body's stress moves light particles faster than their own
+    waves go: without `across.interface_speed` in the step the run breaks in its third.
+    """
     problem = _two_densities(ratio, modulus)
     before = problem.mass @ problem.v
     solver = finished(problem, 3.0)
