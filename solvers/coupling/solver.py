@@ -76,7 +76,7 @@ class Coupled:
         self._told = False
         self._moved = np.zeros((m, 3))  # of the nodes in the last period
         self.seconds = {"structure": 0.0, "particles": 0.0}
-        self._start_energy = self._energies()
+        self._start_energy = self.energies()
 
     @property
     def time(self) -> float:
@@ -223,7 +223,8 @@ class Coupled:
         """What the interface has made: work on the structure less what the particles have done."""
         return self.work + self.particles.given_work
 
-    def _energies(self) -> dict[str, float]:
+    def energies(self) -> dict[str, float]:
+        """Energies of both, without what they exchange."""
         grain, steel = self.particles.energies(), self.structure.energies()
         both = {name: grain.get(name, 0.0) + steel.get(name, 0.0) for name in {**grain, **steel}}
         both["external_work"] -= self._interface_energy()
@@ -250,7 +251,7 @@ class Coupled:
 
     def energy_report(self) -> dict[str, float]:
         """Energies at the start and now; balance_error has in it what the interface made."""
-        return sph.measures.report(self._start_energy, self._energies())
+        return sph.measures.report(self._start_energy, self.energies())
 
     # to be continued
 

@@ -99,9 +99,9 @@ def test_motion_that_ends_is_dissipated() -> None:
     solver = Solver(column(sleep=0.5), threads=1)
     lost, off = 0.0, []
     for _ in range(800):
-        before, asleep = solver._energies(), solver.history()["asleep"]
+        before, asleep = solver.energies(), solver.history()["asleep"]
         solver.advance(1.0, 1)
-        after = solver._energies()
+        after = solver.energies()
         if solver.history()["asleep"] > asleep:
             lost += before["kinetic"] - after["kinetic"]
             off.append(measures.total(after) - measures.total(before))
