@@ -102,11 +102,9 @@ def run(
             dimension=solver.problem.dimension,
             axisymmetric=getattr(solver.problem, "axisymmetric", False),
         )
-        for report in ready.made:
+        for mesh, report in zip(scene.meshes if scene else (), ready.made, strict=True):
             for line in [*report["notes"], *losses(report, "approximated", "dropped")]:
-                log.info(
-                    "making %s: %s", Path(report["target"]["file"]).name if "file" in report["target"] else "", line
-                )
+                log.info("making %s: %s", mesh.target, line)
         warnings = list(dict.fromkeys(warning for m in ready.models for warning in m.warnings))
         for warning in warnings:
             log.warning(warning)

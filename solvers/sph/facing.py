@@ -2,7 +2,9 @@
 
 A particle may touch several facets at once: of those it overlaps the deepest counts, and each further one whose normal
 is another and whose nearest point rises above the tangent planes of those before, as in a corner. Facets of one smooth
-surface are one contact, wherever their edges are. Friction remembers two contacts of a particle by their normals.
+surface are one contact, wherever their edges are. Friction remembers two contacts of a particle by their normals. It
+acts at the particle's centre, as if the facet reached there: what lies on a plate that turns goes round with it, and
+the moment of the friction goes to the nodes.
 
 What a facet feels goes to its nodes by the place of the contact. Each pair keeps the impulses of its nodes; they are
 added up, in the order of the list, when somebody asks: the result does not depend on threads.
@@ -128,6 +130,39 @@ def _nearest(faces, f, px, py, pz, z, out):
 
 
 @kernel
+def _slopes(faces, f, z, out):
+    """Slopes (nodes, 3) of a facet's shape functions along it."""
+    x = faces.x
+    a = faces.corners[f, 0]
+    b = faces.corners[f, 1]
+    if z is None:
+        sx = x[0, b] - x[0, a]
+        sy = x[1, b] - x[1, a]
+        square = sx * sx + sy * sy
+        out[1, 0] = sx / square
+        out[1, 1] = sy / square
+        out[1, 2] = 0.0
+        for k in range(3):
+            out[0, k] = -out[1, k]
+        return
+    c = faces.corners[f, 2]
+    ux, uy, uz = x[0, b] - x[0, a], x[1, b] - x[1, a], x[2, b] - x[2, a]
+    vx, vy, vz = x[0, c] - x[0, a], x[1, c] - x[1, a], x[2, c] - x[2, a]
+    uu = ux * ux + uy * uy + uz * uz
+    uv = ux * vx + uy * vy + uz * vz
+    vv = vx * vx + vy * vy + vz * vz
+    inverse = 1.0 / (uu * vv - uv * uv)
+    out[1, 0] = (vv * ux - uv * vx) * inverse
+    out[1, 1] = (vv * uy - uv * vy) * inverse
+    out[1, 2] = (vv * uz - uv * vz) * inverse
+    out[2, 0] = (uu * vx - uv * ux) * inverse
+    out[2, 1] = (uu * vy - uv * uy) * inverse
+    out[2, 2] = (uu * vz - uv * uz) * inverse
+    for k in range(3):
+        out[0, k] = -out[1, k] - out[2, k]
+
+
+@kernel
 def _contacts(faces, i, px, py, pz, z, radius, found, order, chosen):
     """The pairs of particle i that count into chosen (MOST), as rows of `found` (LOOKED_AT + 1, 13); returns how many.
 
@@ -210,6 +245,8 @@ def face_force(i0, i1, z, faces, law, damping, slip, heat, dt, cx, arrays):
     order = np.empty(LOOKED_AT, np.int64)
     chosen = np.empty(MOST, np.int64)
     taken = np.empty(SLOTS, np.bool_)
+    slopes = np.empty((3, 3))
+    couples = np.empty(3)
     size = 2 * d + 2
     for i in range(i0, i1):
         a0 = 0.0
@@ -264,7 +301,17 @@ def face_force(i0, i1, z, faces, law, damping, slip, heat, dt, cx, arrays):
                 fx = force * nx
                 fy = force * ny
                 fz = force * nz
+                arm = 0.0
                 if slip is not None:
+                    if row[10] > 0.0:  # a facet that turns takes along what it holds at a distance
+                        arm = row[3]
+                        _slopes(faces, f, z, slopes)
+                        for q in range(d):
+                            node = faces.corners[f, q]
+                            rise = faces.v[0, node] * nx + faces.v[1, node] * ny + faces.v[2, node] * nz
+                            sx += arm * slopes[q, 0] * rise
+                            sy += arm * slopes[q, 1] * rise
+                            sz += arm * slopes[q, 2] * rise
                     s = _slot(slip, i, d, nx, ny, nz, taken)
                     if s >= 0:
                         taken[s] = True
@@ -298,14 +345,19 @@ def face_force(i0, i1, z, faces, law, damping, slip, heat, dt, cx, arrays):
                         fx -= tx
                         fy -= ty
                         fz -= tz
+                        for q in range(d):  # and bears its moment
+                            couples[q] = arm * (slopes[q, 0] * tx + slopes[q, 1] * ty + slopes[q, 2] * tz)
+                    else:
+                        arm = 0.0
                 a0 += fx
                 a1 += fy
                 a2 += fz
                 for q in range(d):
-                    faces.thrust[pair, d * q] = -row[q] * fx
-                    faces.thrust[pair, d * q + 1] = -row[q] * fy
+                    couple = couples[q] if arm != 0.0 else 0.0
+                    faces.thrust[pair, d * q] = -row[q] * fx - couple * nx
+                    faces.thrust[pair, d * q + 1] = -row[q] * fy - couple * ny
                     if z is not None:
-                        faces.thrust[pair, d * q + 2] = -row[q] * fz
+                        faces.thrust[pair, d * q + 2] = -row[q] * fz - couple * nz
             if slip is not None:
                 for s in range(SLOTS):
                     if not taken[s]:

@@ -170,3 +170,26 @@ def test_without_friction_it_slides_freely():
     acceleration, _, force = on_an_incline(20.0, None)
     assert acceleration == pytest.approx(GRAVITY * math.sin(math.radians(20.0)), rel=0.001)
     assert force == pytest.approx(-1.0, rel=1e-3)
+
+
+@pytest.mark.slow
+def test_what_lies_on_a_plate_that_turns_goes_round_with_it():
+    """One edge is lifted: a block that sticks keeps its place on the plate, though its centres lie off it."""
+    structure = plate(clamped=False, steps=200, period=0.5)
+    low, high = np.flatnonzero(structure.x[:, 0] == 0.0), np.flatnonzero(structure.x[:, 0] == SIDE)
+    fixed = structure.fixed.copy()
+    fixed[low, :3] = True
+    rise = fem.Curve(np.array([0.0, 20.0, 80.0, 100.0]), np.array([0.0, 0.0, 1.0, 1.0]))
+    sine = 0.25
+    motion = fem.Motion(high, np.full(len(high), 2), np.full(len(high), SIDE * sine), 0)
+    structure = dataclasses.replace(
+        structure, rigid=True, dynamics=None, fixed=fixed, curves=(rise,), motions=(motion,)
+    )
+    grain = facing(structure, gap=0.5, friction=Coulomb(2.0, 2.0), contact_damping=0.3, body_force=(0.0, 0.0, -GRAVITY))
+    grain.v[:] = 0.0
+    coupled = run(drop(structure, grain), 200)
+    arrays = coupled.frame().particles
+    start = arrays["position"] - arrays["displacement"]
+    along = arrays["position"][:, 0] * math.sqrt(1.0 - sine**2) + arrays["position"][:, 2] * sine
+    lowest = start[:, 2] < 2.0
+    assert np.abs(along - start[:, 0])[lowest].max() < 0.003 * SPACING
