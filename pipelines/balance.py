@@ -45,15 +45,24 @@ class Balance:
         error = _error(solver)
         out = f"{error:.0%} of" if error < 10 else f"{error:.3g} times"
         passed = f"was above {LIMIT:.0%} when the run was resumed at" if self._resumed else f"passed {LIMIT:.0%} at"
-        cause = (
-            "steps that are too long for the path of loading or of plastic flow, try more of them"
-            if self._step_factor is None
-            else f"a time step above the stable limit, try a step_factor below {self._step_factor:g}"
-        )
+        cause = self._cause(solver, error)
         return (
             f"the energy balance is out by {out} the largest of kinetic energy (at the start or now), internal energy "
             f"and external work; it {passed} t = {self._since:.4g}: the likely cause is {cause}"
         )
+
+    def _cause(self, solver: Solver, error: float) -> str:
+        made = float(solver.history().get("interface_energy", 0.0))
+        report = solver.energy_report()
+        largest = max(abs(report[name]) for name in ("kinetic", "internal", "external_work"))
+        if abs(made) > 0.5 * error * largest > 0.0:
+            return (
+                "the lag between structure and particles, try coupling.tolerance (1e-3), more steps of the structure, "
+                "or a smaller coupling.relaxation"
+            )
+        if self._step_factor is None:
+            return "steps that are too long for the path of loading or of plastic flow, try more of them"
+        return f"a time step above the stable limit, try a step_factor below {self._step_factor:g}"
 
 
 def _error(solver: Solver) -> float:
