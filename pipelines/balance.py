@@ -52,10 +52,9 @@ class Balance:
         )
 
     def _cause(self, solver: Solver, error: float) -> str:
-        made = float(solver.history().get("interface_energy", 0.0))
+        made = abs(float(solver.history().get("interface_energy", 0.0)))
         report = solver.energy_report()
-        largest = max(abs(report[name]) for name in ("kinetic", "internal", "external_work"))
-        if abs(made) > 0.5 * error * largest > 0.0:
+        if made and made > 0.5 * error * max(abs(report[name]) for name in ("kinetic", "internal", "external_work")):
             return (
                 "the lag between structure and particles, try coupling.tolerance (1e-3), more steps of the structure, "
                 "or a smaller coupling.relaxation"

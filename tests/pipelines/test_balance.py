@@ -13,8 +13,9 @@ from zrno.pipelines.balance import Balance
 class Made:
     """A solver whose energy balance error is given step by step."""
 
-    def __init__(self, *errors: float) -> None:
+    def __init__(self, *errors: float, interface: float = 0.0) -> None:
         self.errors = errors
+        self.interface = interface
         self.step = 0
 
     @property
@@ -25,7 +26,10 @@ class Made:
         self.step += 1
 
     def energy_report(self) -> dict[str, float]:
-        return {"balance_error": self.errors[self.step]}
+        return {"balance_error": self.errors[self.step], "kinetic": 1.0, "internal": 0.0, "external_work": 0.0}
+
+    def history(self) -> dict[str, float]:
+        return {"interface_energy": self.interface}
 
 
 @pytest.mark.parametrize(
@@ -52,3 +56,11 @@ def test_since_when_it_has_been_out(drive: Any, errors: tuple[float, ...], said:
         assert warning is not None
         assert re.search(said, warning), warning
         assert "step_factor below 2" in warning
+
+
+def test_an_interface_that_makes_the_energy_is_blamed() -> None:
+    for made, cause in ((0.09, "lag between structure and particles"), (0.01, "step_factor")):
+        solver = Made(0.1, interface=made)
+        balance = Balance(interval=0.1, step_factor=0.8)
+        balance.start(solver)
+        assert cause in (balance.warning(solver) or "")
