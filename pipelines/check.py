@@ -103,8 +103,9 @@ def _sound(path: Path, model: Model, places: Mapping[str, Place] | None = None) 
         row["warnings"] += map(_not_yet, sorted(missing))
     if model.fem_control is not None:
         from zrno.pipelines.build_fem import refusals as of_structure
+        from zrno.pipelines.fem_method import Fem
 
-        row["warnings"] += map(_not_yet, sorted(of_structure(model, str(path))))
+        row["warnings"] += map(_not_yet, sorted(of_structure(model, str(path), Fem())))
     return row
 
 
