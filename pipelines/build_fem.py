@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 
 from zrno.pipelines.fem_method import Fem
-from zrno.pipelines.laws import structural_law_of
+from zrno.pipelines.laws import overstress_of, structural_law_of
 from zrno.solvers import fem
 from zrno.solvers.errors import Unsupported
 from zrno.solvers.materials import axes_of
 from zrno.translators.control import FemControl
 from zrno.translators.elements import TABLE
-from zrno.translators.model import ElementBlock, FaceLoad, Model, NodalLoad, Section
+from zrno.translators.model import ElementBlock, FaceLoad, Material, Model, NodalLoad, Section
 from zrno.translators.text import Fault, InputError
 
 _GEOMETRY = {0: fem.SMALL, 1: fem.SMALL, 2: fem.TOTAL, 3: fem.UPDATED, 4: fem.UPDATED, 5: fem.UPDATED}
@@ -32,10 +32,10 @@ def structure_problem(model: Model, path: str, method: Fem | None = None) -> fem
     control = model.fem_control
     if control is None:
         raise InputError([Fault(path, 1, 1, "not a finite element deck", model.format, "a .dat deck of PAK")])
-    faults = refusals(model, path)
+    method = method or Fem()
+    faults = refusals(model, path, method)
     if faults:
         raise InputError(sorted(faults))
-    method = method or Fem()
     numbers = sorted(model.curves)
     n = len(model.xyz)
     fixed = _fixed(model, control)
@@ -65,10 +65,11 @@ def structure_problem(model: Model, path: str, method: Fem | None = None) -> fem
                          -e.coefficients[1:] / e.coefficients[0])
             for e in model.equations
         ),
+        stops=tuple(fem.Stop(s.position, s.normal, s.stiffness) for s in method.stops),
         steps=_steps(control, method),
         iteration=_iteration(control, method),
         path=_path(model, control, method),
-        dynamics=_dynamics(control),
+        dynamics=_dynamics(control, method),
         modes=control.eigen_count if control.eigenvalues else 0,
         displacement=_initial_values(model, "displacement", n),
         velocity=_velocities(model, n),
@@ -76,11 +77,19 @@ def structure_problem(model: Model, path: str, method: Fem | None = None) -> fem
     )  # fmt: skip
 
 
-def refusals(model: Model, path: str) -> list[Fault]:
-    """What a deck asks and is not computed, each with its place. path: of the deck."""
+def refusals(model: Model, path: str, method: Fem) -> list[Fault]:
+    """What a deck asks and is not computed, each with its place. path: of the deck; method: the scene's."""
     control = model.fem_control
     assert control is not None
-    faults = []
+    known = ", ".join(map(str, model.materials))
+    faults = [
+        Fault(path, 1, 1, "fem.laws: no such material", str(number), known)
+        for number in method.laws
+        if number not in model.materials
+    ]
+    if method.integration != "deck" and not control.dynamic:
+        message = "fem.integration is of motion, and the deck is static"
+        faults.append(Fault(path, 1, 1, message, method.integration, "a dynamic analysis (NDIN 1)"))
     for part in model.parts.values():
         section = model.sections.get(part.section or -1)
         line = section.source.line if section and section.source else 1
@@ -92,7 +101,7 @@ def refusals(model: Model, path: str) -> list[Fault]:
             continue
         at = material.source.line if material.source else 1
         try:
-            structural_law_of(material, model.curves, None if section is None else _axes(section))
+            _law(model, material, None if section is None else _axes(section), method)
         except (Unsupported, ValueError) as error:
             faults.append(Fault(path, at, 1, f"material {material.id}: {error}", "", "a law that is computed"))
     moving = control.dynamic or control.eigenvalues or control.iteration >= 60
@@ -159,7 +168,7 @@ def _group(model: Model, block: ElementBlock, rows: Any, part: int, method: Fem)
     gauss = tuple(int(native.get(f"NGAUS{axis}", 0)) for axis in "XYZ")
     ids = block.ids[rows]
     solid = family == "solid"
-    law = structural_law_of(material, model.curves, _axes(section))
+    law = _law(model, material, _axes(section), method)
     thickness = data.get("thickness")
     if thickness is None and "thickness" in parameters:
         thickness = np.full(len(ids), parameters["thickness"])
@@ -189,6 +198,11 @@ def _group(model: Model, block: ElementBlock, rows: Any, part: int, method: Fem)
         birth=data.get("birth"),
         death=data.get("death"),
     )
+
+
+def _law(model: Model, material: Material, axes: Any, method: Fem) -> Any:
+    said = method.laws.get(material.id)
+    return structural_law_of(material, model.curves, axes) if said is None else overstress_of(material, said)
 
 
 def _axes(section: Section) -> Any:
@@ -355,16 +369,18 @@ _AXES = ("ux", "uy", "uz", "rx", "ry", "rz")
 FORCE = 1e-6  # unbalanced force over the largest one
 
 
-def _dynamics(control: FemControl) -> fem.Dynamics | None:
+def _dynamics(control: FemControl, said: Fem) -> fem.Dynamics | None:
     if not control.dynamic or control.eigenvalues:
         return None
     first, second = control.integration_parameters
     method = {1: "wilson", 2: "newmark", -2: "newmark", 3: "central"}.get(control.integration, "newmark")
+    method = method if said.integration == "deck" else said.integration
     rayleigh = control.rayleigh if control.damping == 3 else (0.0, 0.0)
     return fem.Dynamics(
         method=method,
         gamma=first or 0.5 if method == "newmark" else 0.5,
         beta=second or 0.25 if method == "newmark" else 0.25,
+        alpha=said.alpha,
         theta=first or 1.4 if method == "wilson" else 1.4,
         lumped=control.mass == 2 or method == "central",
         mass_damping=rayleigh[0],

@@ -113,8 +113,9 @@ def _sound(
                 row["warnings"].append(f"{path}: cannot be run: {error}")
     if model.fem_control is not None:
         from zrno.pipelines.build_fem import refusals as of_structure
+        from zrno.pipelines.fem_method import Fem
 
-        row["warnings"] += map(_not_yet, sorted(of_structure(model, str(path))))
+        row["warnings"] += map(_not_yet, sorted(of_structure(model, str(path), Fem())))
     return row
 
 

@@ -41,7 +41,7 @@ def convert(
     the target cannot say is an error. allow_outside: files that a source includes may stand outside its folder. Raises
     InputError and ValueError; nothing is written then.
     """
-    models = [_read(source, numbers, allow_outside=allow_outside) for source in sources]
+    models = [read_source(source, numbers, allow_outside=allow_outside) for source in sources]
     lacking = [what for model in models for what in model.incomplete]
     if lacking:
         raise ValueError("nothing can be made of a source that lacks what it names: " + "; ".join(lacking[:5]))
@@ -111,7 +111,8 @@ def _contents(summary: Mapping[str, Any]) -> list[tuple[str, int]]:
     return [(name, count) for name, count in counts if count]
 
 
-def _read(path: Path, numbers: Mapping[str, float] | None, *, allow_outside: bool) -> Model:
+def read_source(path: Path, numbers: Mapping[str, float] | None, *, allow_outside: bool) -> Model:
+    """A file's model. numbers: parameters of a .geo script; else as in `convert`."""
     if not numbers:
         model = read(path, paired=True, allow_outside=allow_outside)
         return model if half_of_a_pair(model) else read(path, allow_outside=allow_outside)

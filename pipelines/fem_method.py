@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import Field, field_validator
 
-from zrno.pipelines.sections import Positive, Section, section_of_options
+from zrno.pipelines.sections import NotNegative, Positive, Section, section_of_options, wrong
 
 Count = Annotated[int, Field(ge=1)]
 
@@ -22,6 +22,38 @@ class PathOfLoading(Section):
     controlled: bool = False
 
 
+class Stop(Section):
+    """A rigid smooth plane that nodes cannot pass: a point of it, its normal towards them; stiffness: in multiples of
+    the structure's own at each node."""
+
+    position: tuple[float, float, float]
+    normal: tuple[float, float, float]
+    stiffness: Positive = 3.0
+
+    @field_validator("normal")
+    @classmethod
+    def _not_zero(cls, value: tuple[float, float, float]) -> tuple[float, float, float]:
+        if not any(value):
+            raise wrong("has no direction", "a normal that is not 0")
+        return value
+
+
+class Overstress(Section):
+    """Visco-plasticity by overstress, in place of an elastic material's law, whose E and nu are the deck's.
+
+    f = J + alpha I1 - k - hardening kappa, I1 positive in tension; d kappa/dt = rate <f/k>^power. flow: alpha of the
+    flow, None as alpha.
+    """
+
+    law: Literal["perzyna"]
+    k: Positive
+    alpha: NotNegative = 0.0
+    flow: NotNegative | None = None
+    rate: Positive
+    power: Positive = 1.0
+    hardening: NotNegative = 0.0
+
+
 class Fem(Section):
     """How a structure is computed, where it is not as the deck says.
 
@@ -30,7 +62,9 @@ class Fem(Section):
     of all groups; iteration: newton factors in each iteration, adaptive where the last one was slow or shells turn far,
     modified once a step; search: line search; tolerance: residual force over the largest force; most: iterations of a
     step; cuts: how often a step is halved; steps: number of equal steps to the deck's end; listing: whether
-    displacements, reactions and stresses of each step are also written as text, `listing.lst`.
+    displacements, reactions and stresses of each step are also written as text, `listing.lst`; integration: of motion
+    in time, alpha of hht's; stops: planes that nodes cannot pass; laws: by the number of the deck's material, for what
+    a deck has no card.
     """
 
     solver: Literal["auto", "pardiso", "cholmod", "scipy", "multigrid"] = "auto"
@@ -45,6 +79,10 @@ class Fem(Section):
     steps: Count | None = None
     listing: bool = False
     path: PathOfLoading | None = None
+    integration: Literal["deck", "newmark", "hht", "central"] = "deck"
+    alpha: Annotated[float, Field(ge=-1 / 3, le=0)] = -0.05
+    stops: list[Stop] = Field(default_factory=list)
+    laws: dict[int, Overstress] = Field(default_factory=dict)
 
 
 def of_options(options: Mapping[str, Any]) -> Fem:

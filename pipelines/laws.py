@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from zrno.pipelines.fem_method import Overstress
 from zrno.pipelines.method import Soil
 from zrno.solvers import materials as laws
 from zrno.solvers.errors import Unsupported
@@ -43,6 +44,16 @@ def law_of(material: Material, eos: Eos | None, curves: Mapping[int, Curve]) -> 
     if material.law in ("fluid", "hydro"):
         state = _equation_of_state(eos, material)
     return build(material.parameters, hardening_table(material, curves), state)
+
+
+def overstress_of(material: Material, said: Overstress) -> Law:
+    """The visco-plastic law that a scene says, with the moduli of the deck's elastic material."""
+    if material.law != "elastic":
+        raise ValueError(f"{said.law} takes E and nu of an elastic material, this one is {material.law}")
+    return laws.perzyna(
+        material.parameters["E"], material.parameters["nu"], said.k, said.alpha,
+        rate=said.rate, power=said.power, hardening=said.hardening, flow=said.flow,
+    )  # fmt: skip
 
 
 def soil_of(material: Material, said: Soil, *, automatic: bool = True) -> Law:

@@ -193,9 +193,26 @@ def clusters(now: Cloud, *, link: float = _LINK) -> float:
 
 def at(now: Cloud, *, point: Sequence[float], field: str) -> float:
     """A field at the particle or node that began nearest to a point."""
-    moved = _moved(now)
-    nearest = int(np.argmin(((now.x - moved - np.asarray(point, float)) ** 2).sum(axis=1)))
-    return float(now.field(field)[nearest])
+    return float(now.field(field)[nearest(now.x - _moved(now), point)])
+
+
+def total(now: Cloud, *, field: str, axis: str, place: float) -> float:
+    """A field, summed over the particles or nodes that began at a coordinate, as reactions of a plane."""
+    return float(now.field(field)[in_plane(now.x - _moved(now), axis, place)].sum())
+
+
+def nearest(x: Floats, point: Sequence[float]) -> int:
+    """Which of the points (n, 3) is nearest to a point."""
+    return int(np.argmin(((x - np.asarray(point, float)) ** 2).sum(axis=1)))
+
+
+def in_plane(x: Floats, axis: str, place: float) -> NDArray[np.int64]:
+    """Which of the points (n, 3) have a coordinate, to 1e-6 of their extent. Raises ValueError where none has."""
+    values = x[:, _AXES.index(axis)]
+    found = np.flatnonzero(np.abs(values - place) <= 1e-6 * float(np.ptp(x, axis=0).max()))
+    if not len(found):
+        raise ValueError(f"nothing began at {axis} = {place:g}")
+    return found
 
 
 def _moved(now: Cloud) -> Floats:
@@ -250,6 +267,7 @@ MEASURES: dict[str, Callable[..., Any]] = {
     "restitution": restitution,
     "profile": profile,
     "at": at,
+    "total": total,
 }
 
 

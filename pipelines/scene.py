@@ -261,6 +261,8 @@ def _check_files(document: Marked, scene: Scene, folder: Path) -> None:
     named += [(("decks", i), deck) for i, deck in enumerate(scene.decks) if deck not in made]
     if scene.study is not None and isinstance(scene.study.reference, str):
         named.append((("study", "reference"), scene.study.reference))
+    if scene.study is not None and scene.study.peer is not None:
+        named.append((("study", "peer", "ccx"), scene.study.peer.ccx))
     for i, mesh in enumerate(scene.meshes):
         target = folder / mesh.target
         if target.is_dir() or not target.parent.is_dir():

@@ -16,10 +16,11 @@ from zrno.pipelines.load import load
 from zrno.pipelines.manifest import plain
 from zrno.pipelines.reference import error, measure
 from zrno.pipelines.signals import Unmeasured
+from zrno.pipelines.study_peer import compare
 from zrno.pipelines.study_plan import Plan, prepare
 from zrno.pipelines.study_plot import draw
 from zrno.pipelines.study_runs import digest, stamp_of, timed, warm_up
-from zrno.pipelines.study_table import table
+from zrno.pipelines.study_table import peer_table, table
 from zrno.translators.text import InputError, write_atomically
 
 
@@ -63,8 +64,13 @@ def study(
             timed(plan, chosen, where, stamp, threads=threads, allow_outside=allow_outside, progress=progress)
         rows.append(_row(plan, name, chosen, where, stamp))
         write_atomically(directory / "study.csv", [table(plan.study, rows).encode()])
+    peers, note = compare(
+        plan, directory, repeat=repeat, threads=threads, allow_outside=allow_outside, progress=progress
+    )
     result = ranking.rank(rows, plan.study.tolerance) | {
         "resolution": ranking.resolution(rows),
+        "peers": peers,
+        "peers_note": note,
         "title": plan.scene.title,
         "quantity": str(plan.study.quantity),
         "tolerance": plan.study.tolerance,
@@ -72,6 +78,8 @@ def study(
         "picture": str(directory / "study.png"),
     }
     write_atomically(directory / "study.csv", [table(plan.study, rows).encode()])
+    if peers:
+        write_atomically(directory / "peers.csv", [peer_table(plan.study, peers).encode()])
     text = json.dumps(plain(result), indent=2, ensure_ascii=False, allow_nan=False)
     write_atomically(directory / "study.json", [text.encode(), b"\n"])
     draw(directory / "study.png", result)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import pairwise
+from itertools import cycle, pairwise
 from pathlib import Path
 from textwrap import fill
 from typing import Any
@@ -46,7 +46,9 @@ def draw(target: Path, result: Mapping[str, Any]) -> Path:
     axis.axhline(result["tolerance"], color=COLOURS[2], linewidth=1.2, linestyle="--",
                  label=f"tolerance {result['tolerance']:g}")  # fmt: skip
     _points(axis, rows)
-    _limits(axis, rows, result["tolerance"])
+    beside = [row for row in result["peers"] if row["error"] is not None]
+    _peers(axis, beside)
+    _limits(axis, [*rows, *beside], result["tolerance"])
     _plain_ticks(axis)
     names = ", ".join(key.rpartition(".")[2].replace("_", " ") for key in result["rows"][0]["options"])
     axis.annotate(f"labels: {names}", (0.99, 0.98), xycoords="axes fraction", ha="right", va="top", fontsize="small",
@@ -76,6 +78,15 @@ def _points(axis: Any, rows: Sequence[Mapping[str, Any]]) -> None:
     if best:
         axis.plot(*_xy(best), "o", color=COLOURS[1], markerfacecolor="none", markersize=14, markeredgewidth=2,
                   linestyle="none", zorder=5, label="recommended")  # fmt: skip
+
+
+def _peers(axis: Any, rows: Sequence[Mapping[str, Any]]) -> None:
+    """Another program's runs: a broken line a type of elements."""
+    names = list(dict.fromkeys((row["program"], row["element"]) for row in rows))
+    for (program, element), marker in zip(names, cycle("s^vDP"), strict=False):
+        own = [row for row in rows if (row["program"], row["element"]) == (program, element)]
+        axis.plot(*_xy(own), linestyle=":", marker=marker, color=COLOURS[3], linewidth=1.0, markersize=5, zorder=3,
+                  label=f"{program} {element}")  # fmt: skip
 
 
 def _xy(rows: Sequence[Mapping[str, Any]]) -> tuple[list[float], list[float]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
@@ -12,9 +13,11 @@ from zrno.pipelines.quantities import quantity as label
 from zrno.pipelines.sections import NotNegative, Positive, Section, wrong
 from zrno.pipelines.signals import TAKES
 from zrno.solvers.exact import SOLUTIONS
+from zrno.translators.calculix import TYPES
 from zrno.translators.yaml_marks import Location, did_you_mean
 
 MOST_RUNS = 1000
+OF_NODES = ("at", "total")  # measures of nodes that another program prints
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 
 
@@ -48,6 +51,7 @@ class Quantity(Section):
     about: tuple[Finite, Finite, Finite] | None = None
     field: str | None = None
     point: tuple[Finite, Finite, Finite] | None = None
+    place: Finite | None = None
     fraction: Annotated[float, Field(gt=0, le=1)] | None = None
     heap: bool | None = None
     link: Positive | None = None
@@ -74,6 +78,12 @@ class Quantity(Section):
         if self.measure == "profile":
             return self.axis
         return "time" if self.when == "all" and self.take is None else None
+
+    @property
+    def of_nodes(self) -> bool:
+        """Whether it is a displacement or reaction of nodes in the last frame, which other programs print, too."""
+        known = re.fullmatch(r"(displacement|reaction)_[xyz]", self.field or "")
+        return self.measure in OF_NODES and known is not None and self.when == "last" and self.take is None
 
     @property
     def name(self) -> str:
@@ -168,6 +178,22 @@ class Analytic(Section):
                 yield (message.partition(" ")[0],), message, expected
 
 
+class Peer(Section):
+    """Another program on the same meshes, beside ours. ccx: an input file of CalculiX beside the scene, which includes
+    `mesh.inp` and prints what is measured at the set AT; elements: types that the meshes are given, one after the other,
+    each with parameters of the .geo script that its mesh needs.
+    """
+
+    ccx: str
+    elements: Annotated[dict[str, dict[str, float] | None], Field(min_length=1)]
+
+    def faults(self) -> Iterator[tuple[Location, str, str]]:
+        """As `Quantity.faults`."""
+        for name in self.elements:
+            if name not in TYPES:
+                yield ("elements", name), f"no type of elements {name}", did_you_mean(name, TYPES)
+
+
 class Study(Section):
     """Speed against error: what varies, and what the answers are measured against.
 
@@ -181,6 +207,7 @@ class Study(Section):
     paired: bool = False
     reference: Finite | str | None = None
     analytic: Annotated[Analytic | None, BeforeValidator(_named)] = None
+    peer: Peer | None = None
 
     @field_validator("analytic")
     @classmethod
@@ -191,14 +218,28 @@ class Study(Section):
 
     def faults(self) -> Iterator[tuple[Location, str, str]]:
         """As `Quantity.faults`, of the whole section."""
-        for part in ("quantity", "analytic"):
+        for part in ("quantity", "analytic", "peer"):
             section = getattr(self, part)
             for location, message, expected in section.faults() if section is not None else ():
                 yield (part, *location), message, expected
         if self.reference is None and self.analytic is None:
             yield (), "nothing to measure against", "reference or analytic"
+        if self.peer is not None:
+            yield from self._beside()
         yield from self._against()
         yield from self._design()
+
+    def _beside(self) -> Iterator[tuple[Location, str, str]]:
+        """What another program can be asked."""
+        if not self.quantity.of_nodes:
+            yield (
+                ("peer",),
+                "another program cannot be asked for this quantity",
+                "at or total, of displacement_x, reaction_x, ...",
+            )
+        for key in self.vary:
+            if not key.startswith(("numbers.", "meshes.0.numbers.", "fem.")):
+                yield ("vary", key), f"the peer's input file cannot follow {key}", "numbers of the mesh, keys of fem"
 
     def _against(self) -> Iterator[tuple[Location, str, str]]:
         """A number is measured against a number, a curve against a curve."""

@@ -28,6 +28,18 @@ def table(study: Study, rows: Sequence[Mapping[str, Any]]) -> str:
     return out.getvalue()
 
 
+def peer_table(study: Study, rows: Sequence[Mapping[str, Any]]) -> str:
+    """peers.csv: as study.csv, of another program on the same meshes."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    keys = [key for key in study.vary if key in rows[0]["options"]]
+    columns = ("program", "element", "error", "value", "wall_seconds", "repeats", "nodes", "message", "run")
+    writer.writerow([*keys, *columns])
+    for row in rows:
+        writer.writerow([*map(said, row["options"].values()), *(_cell(row[name]) for name in columns)])
+    return out.getvalue()
+
+
 def _cell(value: Any) -> Any:
     return repr(value) if isinstance(value, float) else "" if value is None else value
 
@@ -50,6 +62,13 @@ def study_text(result: Mapping[str, Any]) -> str:
     lines = [
         "  ".join([*(c.rjust(w) for c, w in zip(line, widths, strict=False)), line[-1]]).rstrip() for line in cells
     ]
+    for row in sorted(result["peers"], key=lambda row: float(row["wall_seconds"])):
+        shown = f"error {row['error']:.3g}" if row["error"] is not None else row["message"]
+        lines.append(
+            f"{row['program']} {row['element']}, {ranking.label(row['options'])}: {shown}, {row['wall_seconds']:.2f} s"
+        )
+    if result["peers_note"]:
+        lines.append(result["peers_note"])
     lines.append(f"error: relative, of {result['quantity']}; tolerance {result['tolerance']:g}")
     if result["order_of_convergence"] is not None:
         lines.append(f"order of convergence in {result['resolution']}: {result['order_of_convergence']:.2f}")

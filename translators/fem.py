@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from zrno.translators import fem_loads, held
+from zrno.translators.conditions import InitialVelocity
 from zrno.translators.convert import equation_of
 from zrno.translators.elements import TABLE
 from zrno.translators.fem_control import control_of, is_plastic, native_of
@@ -63,6 +64,7 @@ def to_fem(model: Model, settings: Settings) -> tuple[Model, Report]:
         target.parts[part] = replace(target.parts[part], material=own.id, native={})
     _sections(target, settings)
     target.fixed = _fixed(target, settings, report)
+    _velocities(target, settings)
     fem_loads.of_settings(target, settings)
     fem_loads.as_the_deck_says(target, settings, report)
     target.fem_control = control_of(target, settings)
@@ -190,6 +192,19 @@ def _fixed(model: Model, settings: Settings, report: Report) -> NDArray[np.bool_
     if model.dimension == 2:
         fixed[:, 2] = True
     return fixed
+
+
+def _velocities(target: Model, settings: Settings) -> None:
+    """What the settings say of the parts' velocities at the start, beside the mesh's own."""
+    for part in target.parts:
+        entry = settings_of(settings, target, part)[1]
+        if entry is None or not any(entry["velocity"]):
+            continue
+        mine = [block.nodes[block.part == part].ravel() for block in target.blocks]
+        nodes = np.unique(np.concatenate(mine))
+        places = target.xyz[nodes]
+        columns = [np.broadcast_to(held.values_at(v, places, "velocity"), len(nodes)) for v in entry["velocity"]]
+        target.initial_velocities.append(InitialVelocity(nodes, np.column_stack(columns).astype(float)))
 
 
 def _report_lost(model: Model, target: Model, report: Report) -> None:

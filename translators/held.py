@@ -71,11 +71,11 @@ def of_particles(
             bc[mine], v[mine] = code[nodes], velocity[nodes]
         if entry is not None and entry["bc"]:
             where = entry["bc_where"]
-            held = mine if where is None else mine[_values(where, filling.x[mine], "bc_where")]
+            held = mine if where is None else mine[values_at(where, filling.x[mine], "bc_where")]
             bc[held] = BOUNDARY_CODES[entry["bc"]]
         if entry is not None and any(entry["velocity"]):
             for axis, component in enumerate(entry["velocity"]):
-                v[mine, axis] = _values(component, filling.x[mine], "velocity")
+                v[mine, axis] = values_at(component, filling.x[mine], "velocity")
     report.approximate("constraints", near, "particles held, since the node nearest to them is")
     turning = [i for i in model.initial_velocities if i.rotation is not None and i.rotation.any()]
     report.drop("initial rotations", len(turning), "particles have none")
@@ -86,7 +86,7 @@ def of_particles(
     return bc, v
 
 
-def _values(said: float | Formula, x: Floats, key: str) -> Any:
+def values_at(said: float | Formula, x: Floats, key: str) -> Any:
     """Of a number, or of a formula at places x (n, 3). ValueError where it is no number there."""
     if not isinstance(said, Formula):
         return said

@@ -17,6 +17,7 @@ from .problem import (
     Path,
     Problem,
     Relation,
+    Stop,
 )
 from .solver import Solver
 
@@ -38,4 +39,5 @@ __all__ = [
     "Problem",
     "Relation",
     "Solver",
+    "Stop",
 ]

@@ -14,6 +14,7 @@ from .groups.group import Sink
 from .groups.timed import TimedGroup
 from .problem import SMALL, Problem
 from .shape import Shape
+from .stops import Stops
 
 Floats = NDArray[np.float64]
 
@@ -76,6 +77,7 @@ class Assembly:
         self._timed = [g for g in self.groups if isinstance(g, TimedGroup)]
         self.idle = self._idle()
         self.system = self._system(self.structure.starts, self.structure.columns)
+        self.stops = self._stops()
 
     def _system(self, starts: NDArray[np.int32], columns: NDArray[np.int32]) -> linear.System:
         kind = "definite" if self.structure.symmetric else "general"
@@ -132,6 +134,8 @@ class Assembly:
         sink = Sink(np.zeros((self.n, 6)), self.structure, values, moved)
         for group in self.groups:
             group.evaluate(shape, before, dt, sink)
+        if self.stops is not None:
+            self.stops.evaluate(shape.u, sink)
         if values is not None and len(self._moments):
             x, y, z = sink.forces[self._moments, 3:].T
             zero = np.zeros_like(x)
@@ -228,24 +232,41 @@ class Assembly:
             group.mass(sink)
         return diagonal, values
 
+    def _stops(self) -> Stops | None:
+        """The planes that nodes cannot pass, as stiff as the structure at its start asks."""
+        p = self.problem
+        if not p.stops:
+            return None
+        stops = Stops(p.stops, p.x, np.flatnonzero(self.active[:, :3].any(axis=1)))
+        self.stops = None
+        values = self.stiffness_values(Shape(np.zeros((self.n, 6)), self.still))
+        diagonal = np.zeros(6 * self.n)
+        diagonal[self.where] = values[self._diagonal_places()]
+        stops.bind(self.structure, diagonal.reshape(self.n, 6))
+        return stops
+
     def stiffness_values(self, shape: Shape) -> Floats:
-        """Stiffness at a shape, as values of the structure; the matrix itself stays as it is."""
+        """Stiffness at a shape, every stop touched, as values of the structure; the matrix itself stays as it is."""
         sink = Sink(np.zeros((self.n, 6)), self.structure, np.zeros(len(self.structure.columns)))
         for group in self.groups:
             group.evaluate(shape, shape, 0.0, sink)
+        if self.stops is not None:
+            self.stops.evaluate(shape.u, sink, closed=True)
         assert sink.values is not None
         return sink.values
 
     def diagonal_values(self, diagonal: Floats) -> Floats:
         """A diagonal matrix (n, 6) as values of the structure."""
         values = np.zeros(len(self.structure.columns))
-        rows = diagonal.ravel()[self.where]
-        if self.structure.symmetric:  # each row begins with its diagonal
-            values[self.structure.starts[:-1]] = rows
-        else:
-            numbers = np.repeat(np.arange(len(rows)), np.diff(self.structure.starts))
-            values[numbers == self.structure.columns] = rows
+        values[self._diagonal_places()] = diagonal.ravel()[self.where]
         return values
+
+    def _diagonal_places(self) -> NDArray[np.int64]:
+        """Where the diagonal stands among the values."""
+        s = self.structure
+        if s.symmetric:  # each row begins with its diagonal
+            return np.asarray(s.starts[:-1], np.int64)
+        return np.flatnonzero(np.repeat(np.arange(s.count), np.diff(s.starts)) == s.columns)
 
     def full_matrix(self, what: str, shape: Shape | None = None) -> sp.csr_matrix:
         """Consistent "mass", or "stiffness" at a shape, of all degrees of freedom (6 n, 6 n), held ones too."""

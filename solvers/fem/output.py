@@ -27,6 +27,7 @@ def is_linear(problem: Problem) -> bool:
         and not any(load.follows for load in problem.face_loads)
         and not any(m.incremental for m in problem.motions)
         and not any(has_life(e) for e in problem.elements)
+        and not problem.stops
     )
 
 
@@ -91,7 +92,9 @@ def history(solver: Solver, energies: dict[str, float]) -> dict[str, float]:
     row = {"time": solver.time, "dt": solver.dt, **energies}
     momentum = solver.procedure.momentum(solver)
     row |= dict(zip(("momentum_x", "momentum_y", "momentum_z"), momentum.tolist(), strict=True))
-    row |= dict.fromkeys(("contact_force_x", "contact_force_y", "contact_force_z"), 0.0)
+    stops = solver.assembly.stops
+    pushed = np.zeros(3) if stops is None else stops.force(solver.shape.u)
+    row |= dict(zip(("contact_force_x", "contact_force_y", "contact_force_z"), pushed.tolist(), strict=True))
     row["active"] = float(
         sum(len(g.elements.ids) for g in solver.assembly.groups if not isinstance(g, TimedGroup) or g.living)
     )

@@ -132,6 +132,16 @@ class Relation:
 
 
 @dataclass(frozen=True, slots=True)
+class Stop:
+    """A rigid smooth plane that nodes cannot pass: a point of it, its normal towards them, and how stiff it is, in
+    multiples of the structure's own stiffness at each node."""
+
+    position: tuple[float, float, float]
+    normal: tuple[float, float, float]
+    stiffness: float = 3.0
+
+
+@dataclass(frozen=True, slots=True)
 class Path:
     """Loads that are found. node, dof: whose first increment is `first` (its sign is the way to go); controlled: each
     step is as long there, else the length of arc that this makes."""
@@ -197,6 +207,7 @@ class Problem:
     face_loads: tuple[FaceLoad, ...] = ()
     body_loads: tuple[BodyLoad, ...] = ()
     relations: tuple[Relation, ...] = ()
+    stops: tuple[Stop, ...] = ()
     steps: tuple[tuple[int, float], ...] = ((1, 1.0),)
     iteration: Iteration = field(default_factory=Iteration)
     path: Path | None = None

@@ -207,9 +207,11 @@ class Solver:
     def energies(self) -> dict[str, float]:
         """Kinetic, internal (what flow and damping took included), dissipated, and the work of loads and supports."""
         pairs = [g.energies() for g in self.assembly.groups]
+        stops = self.assembly.stops
+        held = 0.0 if stops is None else stops.energy(self.shape.u)
         return {
             "kinetic": self.procedure.kinetic(self),
-            "internal": sum(p[0] for p in pairs) + self.damped,
+            "internal": sum(p[0] for p in pairs) + held + self.damped,
             "dissipated": sum(p[1] for p in pairs) + self.damped,
             "external_work": self.external_work,
         }

@@ -40,6 +40,7 @@ class ContinuumGroup:
         self.thickness = np.ones(e) if elements.thickness is None else _mean(elements.thickness)
         self.rows = max(1, state_rows(elements.law))
         self.stress, self.trial = np.zeros((m, 6)), np.zeros((m, 6))
+        self._turned = np.zeros((m, 6)) if elements.geometry == UPDATED else self.stress  # what a step begins with
         self.strain = np.zeros((m, 6))
         self._strain_step = np.zeros((m, 6))
         self.history, self._history = np.zeros((self.rows, m)), np.zeros((self.rows, m))
@@ -113,7 +114,7 @@ class ContinuumGroup:
             raise Bad(int(el.ids[lo + int(np.argmin(smallest))]), "its volume is not positive")
         if el.geometry == UPDATED:
             self._turn(nodes, middle, u, before, rows)
-        old = self.trial[rows] if el.geometry == UPDATED else self.stress[rows]
+        old = self._turned[rows]
         modulus = self._modulus[: (hi - lo) * g]
         if el.plane == "stress":
             advance_plane_stress(el.law, strain, old, self.trial[rows], self._history, lo * g, el.density, dt,
@@ -135,13 +136,12 @@ class ContinuumGroup:
         sink.add(nodes, self.dofs, self._offsets[lo:hi], forces, matrix)
 
     def _turn(self, nodes: Any, middle: Floats, u: Floats, before: Floats, rows: slice) -> None:
-        """Turn the committed stress with the material, into `trial` (Hughes & Winget 1980)."""
-        loops.turned(nodes, middle, u, before, self._slopes, self.plane, self.stress[rows], self.trial[rows])
+        """Turn the committed stress with the material (Hughes & Winget 1980)."""
+        loops.turned(nodes, middle, u, before, self._slopes, self.plane, self.stress[rows], self._turned[rows])
 
     def commit(self) -> None:
         doubled = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
-        before = self.trial if self.elements.geometry == UPDATED else self.stress
-        self.energy += 0.5 * np.einsum("mc,mc,c->m", before + self.trial, self._strain_step, doubled)
+        self.energy += 0.5 * np.einsum("mc,mc,c->m", self._turned + self.trial, self._strain_step, doubled)
         self.stress[:] = self.trial
         self.history[:] = self._history
         self.strain += self._strain_step

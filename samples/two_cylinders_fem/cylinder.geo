@@ -1,0 +1,9 @@
+// The left one of two cylinders that meet head on at x = 0, as the rectangle that a cut along its axis shows. Lengths in cm.
+If (!Exists(n)) n = 25; EndIf           // elements over the diameter; two times as many along the axis
+If (!Exists(length)) length = 3; EndIf
+Point(1) = {-length, -0.5, 0};
+Point(2) = {0, -0.5, 0};
+Line(1) = {1, 2};
+Transfinite Curve{1} = Ceil(2 * n * length / 3) + 1;
+out[] = Extrude {0, 1, 0} { Curve{1}; Layers{n}; Recombine; };
+Physical Surface("left") = {out[1]};
