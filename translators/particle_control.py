@@ -6,7 +6,7 @@ from typing import Any
 
 from zrno.translators import held
 from zrno.translators.materials import ANY
-from zrno.translators.model import Model, ParticleControl
+from zrno.translators.model import Material, Model, ParticleControl
 from zrno.translators.report import Report
 from zrno.translators.settings import Settings
 
@@ -58,6 +58,7 @@ def particle_control(
     )
     if control.friction is not None or control.fluid_friction is not None or control.birth_death:
         control.dialect = "2019-10"
+    structure = settings["structure"]
     if control.contact:
         for material in target.materials.values():
             law = laws.get(material.name) or laws.get(material.name.removeprefix("part ")) or laws.get(ANY)
@@ -66,8 +67,30 @@ def particle_control(
                 settings.fault(("contact",), "a part has no contact law", material.name, expected)
             else:
                 control.contact_laws.append(law)
+        if structure["nodes"]:
+            control.contact_laws.append((structure["strength"], structure["exponent"]))
         settings.stop()
+    if structure["nodes"]:
+        _add_structure(target, structure)
     return control
+
+
+def _add_structure(target: Model, said: Any) -> None:
+    """The material of a structure's nodes, which the original programs take for particles behind the deck's own."""
+    first = target.materials[1]
+    number, particles = len(target.materials) + 1, target.particles
+    assert particles is not None
+    each = first.mass / max(int((particles.material == 1).sum()), 1)
+    target.materials[number] = Material(
+        number,
+        name="structure",
+        law="elastic",
+        density=said["density"],
+        parameters={"E": said["E"], "nu": said["nu"]},
+        mass=each * said["nodes"] if said["mass"] is None else said["mass"],
+        h=first.h if said["h"] is None else said["h"],
+    )
+    target.velocity_overrun = said["nodes"]
 
 
 def _transducers(target: Model, settings: Settings, dimension: int) -> list[tuple[float, ...]]:

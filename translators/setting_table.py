@@ -11,6 +11,7 @@ from zrno.translators.setting_types import (
     dofs,
     field,
     law_parameters,
+    maybe,
     number,
     numbers,
     one_of,
@@ -130,6 +131,20 @@ TABLE: tuple[Setting | Group, ...] = (
         ),
         'of contact: potential, by part, "*": any other',
         named=True,
+    ),
+    Group(
+        "structure",
+        (
+            Setting("nodes", maybe(count), None, "of the .dat deck beside it; null: it has none", "velocity cards"),
+            Setting("E", number(0.0), 2.1e5, "of the material that the original programs give its nodes"),
+            Setting("nu", number(0.0), 0.3, "of the same"),
+            Setting("density", number(0.0), 7.8e-3, "of the same"),
+            Setting("mass", number(0.0, optional=True), None, "of all nodes; null: as heavy as the particles, each"),
+            Setting("h", number(0.0, optional=True), None, "their smoothing length; null: the particles'"),
+            Setting("strength", number(0.0), 0.0, "of contact: potential, K", "contact card K"),
+            Setting("exponent", number(0.0), 4.0, "and n", "contact card n"),
+        ),
+        "particle deck of a coupled pair: the nodes that stand behind its particles",
     ),
     Group(
         "viscosity",

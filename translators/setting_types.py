@@ -185,6 +185,11 @@ def count(value: Any) -> int:
     return value
 
 
+def maybe(parse: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """null, or what `parse` takes."""
+    return lambda value: None if value is None else parse(value)
+
+
 def law_parameters(table: Mapping[str, Law] = LAWS) -> dict[str, tuple[Callable[[Any], Any], list[str]]]:
     """Parameters of all laws, or equations of state: how each is parsed, and the laws that have it."""
     laws: dict[str, list[str]] = {}
