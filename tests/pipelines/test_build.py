@@ -143,6 +143,8 @@ def test_the_method_beyond_the_deck_is_by_material_or_as_it_is_said(tmp_path: Pa
     assert particle_problem(model, "deck.mcm", method=asked).cures == Cures(artificial_stress=0.3)
     assert particle_problem(model, "deck.mcm", method=asked, original=True).cures == Cures()
     grain = _read(tmp_path, ("    1    3       2.7", "    1    4       2.7"), CAP)
+    assert particle_problem(grain, "deck.mcm").bodies[0].stress_diffusion == 0.0  # it has cohesion: k above gamma
+    grain.materials[1].parameters["gamma"] = grain.materials[1].parameters["alpha"]
     assert particle_problem(grain, "deck.mcm").bodies[0].stress_diffusion == 0.1
     assert particle_problem(grain, "deck.mcm", method=Sph(cures="none")).bodies[0].stress_diffusion == 0.0
     said = of_options({

@@ -8,7 +8,8 @@ import pytest
 
 from zrno.pipelines import samples
 from zrno.pipelines.check import check, check_text, fault_lines
-from zrno.translators import load_settings
+from zrno.pipelines.run import run
+from zrno.translators import InputError, load_settings
 
 SCENE = "meshes: [{source: plate.msh, target: plate.mcm, settings: plate.yaml, spacing: 0.25}]\ndecks: [plate.mcm]\n"
 SETTINGS = "end_time: 0.1\nmaterials:\n  plate: {density: 2, E: 10, nu: 0.3}\n"
@@ -86,11 +87,20 @@ def test_faults_of_meshes_settings_and_scene_have_their_places(
     assert lines[0].startswith(said), lines
 
 
-def test_a_pair_is_said_not_to_run_yet(scene: Path) -> None:
+def test_both_decks_of_a_pair_are_looked_at(scene: Path) -> None:
     (scene.parent / "plate.dat").write_text("C a deck\n")
     scene.write_text(SCENE.replace("[plate.mcm]", "[plate.dat, plate.mcm]"))
-    rows = check([scene])
-    assert "cannot be run yet: one run takes one deck" in rows[0]["warnings"][0]
+    rows = {Path(row["file"]).name: row for row in check([scene])}
+    assert sorted(rows) == ["plate.dat", "plate.mcm", "scene.yaml"]
+    assert rows["plate.dat"]["faults"]
+    assert not rows["plate.mcm"]["faults"]
+
+
+def test_two_decks_of_a_kind_make_no_run(tmp_path: Path) -> None:
+    for name in ("a.mcm", "b.mcm"):
+        (tmp_path / name).write_text("")
+    with pytest.raises(InputError, match=r"these do not make a run .a.mcm, b.mcm.; expected one .mcm, one .dat"):
+        run([tmp_path / "a.mcm", tmp_path / "b.mcm"], output=tmp_path / "out")
 
 
 def test_samples_are_sound_without_a_warning(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from zrno.pipelines import options, scene
+from zrno.pipelines.sections import Friction
 from zrno.translators import InputError, load_settings, read, yaml_marks
 from zrno.translators.model import Material, Model, ParticleControl
 
@@ -69,7 +70,7 @@ def _faults(path: Path, **options: object) -> list[str]:
 def test_the_whole_scene_is_read(tmp_path: Path) -> None:
     read_scene = scene.load(_scene(tmp_path, GOOD))
     assert read_scene.coupling is not None
-    assert read_scene.coupling.friction == scene.Friction(static=0.65, kinetic=0.55)
+    assert read_scene.coupling.friction == Friction(static=0.65, kinetic=0.55)
     assert read_scene.output.every == 0.1
     assert [picture.time for picture in read_scene.render] == ["last", 0.5]
     assert read_scene.system is not None
