@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from zrno.pipelines import load, run
@@ -58,3 +62,28 @@ def test_a_pair_runs(tmp_path: Path) -> None:
     assert sorted(f.name for f in (tmp_path / "out").glob("*.pvd")) == [
         "elements.pvd", "mat01_block.pvd", "mat02_structure.pvd", "particles.pvd",
     ]  # fmt: skip
+
+
+def test_a_killed_pair_goes_on_from_its_checkpoint(tmp_path: Path) -> None:
+    """SIGKILL in the middle; --resume ends in the same state as an unbroken run."""
+    pair = [str(root() / "pairs" / f"msh.{suffix}") for suffix in ("dat", "mcm")]
+    run(pair, output=tmp_path / "whole")
+    command = [sys.executable, "-c", "from zrno.pipelines.cli import main; main()", "run", *pair]
+    broken = tmp_path / "broken"
+    process = subprocess.Popen([*command, "-o", str(broken)], stderr=subprocess.DEVNULL)
+    while process.poll() is None and not list(broken.glob("checkpoint_*.h5")):
+        time.sleep(0.01)
+    process.kill()
+    process.wait()
+    result = run(pair, output=broken, resume=True)
+    assert result["status"] == "done"
+    assert "resumed at t = " in (broken / "run.log").read_text()
+    one, two = load(tmp_path / "whole"), load(broken)
+    assert np.array_equal(one.times, two.times)
+    last = len(one.times) - 1
+    for series in ("particles", "elements"):
+        first, second = one.arrays(series, last), two.arrays(series, last)
+        for name, values in first.items():
+            assert np.array_equal(values, second[name]), name
+    for name, values in one.history.items():
+        assert np.array_equal(values, two.history[name]), name

@@ -193,3 +193,32 @@ def test_what_lies_on_a_plate_that_turns_goes_round_with_it():
     along = arrays["position"][:, 0] * math.sqrt(1.0 - sine**2) + arrays["position"][:, 2] * sine
     lowest = start[:, 2] < 2.0
     assert np.abs(along - start[:, 0])[lowest].max() < 0.003 * SPACING
+
+
+def test_a_plate_lifted_at_10_metres_a_second_keeps_its_block():
+    """Up to 10 mm/ms in 8 ms, at up to 200 g: the force is the weight and what speeds the block up, and never gone."""
+    period, count = 0.1, 200
+    structure = plate(steps=count, period=period)
+    every = np.arange(len(structure.x))
+    times = period * np.arange(count + 1)
+    speed = 10.0 * np.sin(0.5 * math.pi * np.clip((times - 5.0) / 8.0, 0.0, 1.0)) ** 2
+    way = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * period)])
+    lift = fem.Motion(every, np.full(len(every), 2), np.ones(len(every)), 0)
+    structure = dataclasses.replace(
+        structure, rigid=True, dynamics=None, curves=(fem.Curve(times, way),), motions=(lift,),
+        fixed=np.zeros_like(structure.fixed),
+    )  # fmt: skip
+    grain = facing(structure, gap=0.5, contact_damping=0.3, body_force=(0.0, 0.0, -GRAVITY))
+    grain.v[:] = 0.0
+    coupled = drop(structure, grain)
+    force = np.zeros(count)
+    for k in range(count):
+        coupled.advance(math.inf, 1)
+        force[k] = -coupled.force[:, 2].sum()
+    mass, now = 64 * DENSITY * 8.0, times[1:]
+    wanted = mass * (GRAVITY + np.gradient(speed, times)[1:])
+    going = (now > 5.0) & (now <= 13.0)
+    assert force[going].min() > 0.0
+    assert np.abs(force - wanted).max() < 0.04 * wanted.max()  # what rings is the block
+    assert force[now > 15.0].mean() == pytest.approx(mass * GRAVITY, rel=0.05)
+    assert coupled.frame().particles["velocity"][:, 2] == pytest.approx(10.0, rel=2e-3)
