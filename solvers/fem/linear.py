@@ -161,10 +161,16 @@ def _mkl() -> Any:
     """MKL's library. pypardiso finds it too, but looks through the whole environment: a tenth of a second."""
     beside = sorted((Path(sys.prefix) / "lib").glob("libmkl_rt.so*"))
     if beside:
-        return ctypes.CDLL(str(beside[-1]))
-    from pypardiso.pardiso_wrapper import PyPardisoSolver
+        library = ctypes.CDLL(str(beside[-1]))
+    else:
+        from pypardiso.pardiso_wrapper import PyPardisoSolver
 
-    return PyPardisoSolver().libmkl
+        library = PyPardisoSolver().libmkl
+    library.MKL_CBWR_Set(ctypes.c_int(SAME_BITS))  # before its first use; where it cannot, it does as ever
+    return library
+
+
+SAME_BITS = 0x10002  # MKL_CBWR_AUTO, strict: results do not depend on where arrays lie, and a resumed run goes on alike
 
 
 class _Pardiso:
