@@ -192,6 +192,7 @@ def _group(model: Model, block: ElementBlock, rows: Any, part: int, method: Fem)
         plane=section.plane if family == "plane" else "",
         thickness=thickness,
         layers=gauss[2] or 2,
+        shear_factor=method.shear_factor or 5.0 / 6.0,
         section={k: v for k, v in parameters.items() if isinstance(v, float)},
         orientation=data.get("orientation"),
         value=data.get("area"),

@@ -30,7 +30,8 @@ class Fem(Section):
     of all groups; iteration: newton factors in each iteration, adaptive where the last one was slow or shells turn far,
     modified once a step; search: line search; tolerance: residual force over the largest force; most: iterations of a
     step; cuts: how often a step is halved; steps: number of equal steps to the deck's end; listing: whether
-    displacements, reactions and stresses of each step are also written as text, `listing.lst`.
+    displacements, reactions and stresses of each step are also written as text, `listing.lst`; shear_factor: of shells,
+    5/6 unless it is said; a large one, 1000, makes shells that do not shear.
     """
 
     solver: Literal["auto", "pardiso", "cholmod", "scipy", "multigrid"] = "auto"
@@ -44,6 +45,7 @@ class Fem(Section):
     cuts: Annotated[int, Field(ge=0, le=30)] = 8
     steps: Count | None = None
     listing: bool = False
+    shear_factor: Positive | None = None
     path: PathOfLoading | None = None
 
 
