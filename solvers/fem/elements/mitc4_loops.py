@@ -38,8 +38,8 @@ def strains(
 
     x: (N, 3); u, before: (N, 6); turn: (N, 3, 3); directors: (e, 4, 3); half: (e, 4) half thickness; points: (4, 2) in
     the plane; layers: (l,) along t; root: of the shear factor; finite: True with finite rotation, None; committed: (e 4
-    l, 6) strain so far; convex: (e,) set False for an element that is not; untied: True for strains of the displacements
-    alone, None for those of MITC4+.
+    l, 6) strain so far; convex: (e,) set False for an element that is not; untied: True for strains of the
+    displacements alone, None for those of MITC4+.
     """
     reference, thick, now, corner = np.empty((4, 3)), np.empty((4, 3)), np.empty((4, 3)), np.empty((4, 3))
     moved, turns, step = np.empty((4, 6)), np.empty((4, 3, 3)), np.empty((4, 6))
