@@ -42,7 +42,7 @@ def coupled_problem(
 
     Raises InputError for what the decks ask and is not done, ValueError for what does not go together.
     """
-    structure = structure_problem(steel, paths[1], of_structure)
+    structure = structure_problem(steel, paths[1], of_structure, original=original)
     if how.rigid or _all_given(structure):
         structure = dataclasses.replace(structure, rigid=True)
     surface = wetted(steel, _parts(steel, how, paths[1]))

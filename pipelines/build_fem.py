@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from typing import Any
 
@@ -24,8 +25,10 @@ _SHELLS = ("tri3", "quad4", "quad8", "quad9")
 _COMPUTED = ("solid", "plane", "truss", "beam", "shell", "spring", "mass")
 
 
-def structure_problem(model: Model, path: str, method: Fem | None = None) -> fem.Problem:
+def structure_problem(model: Model, path: str, method: Fem | None = None, *, original: bool = False) -> fem.Problem:
     """The problem that a finite element deck poses. path: of the deck; method: what the scene says beyond it.
+
+    original: four-node shells without incompatible modes lock, as the original program's do.
 
     Raises InputError for what the deck asks and this solver does not do.
     """
@@ -43,7 +46,7 @@ def structure_problem(model: Model, path: str, method: Fem | None = None) -> fem
     if lost:
         warning = f"{path}: {lost} forces or moments on degrees of freedom that are held do nothing"
         model.warnings += [warning] if warning not in model.warnings else []
-    elements = tuple(_elements(model, method))
+    elements = tuple(_as_original(e) if original else e for e in _elements(model, method))
     plain = all(e.geometry == fem.SMALL for e in elements)
     return fem.Problem(
         title=model.title,
@@ -142,6 +145,12 @@ def _elements(model: Model, method: Fem) -> list[fem.Elements]:
     return found
 
 
+def _as_original(elements: fem.Elements) -> fem.Elements:
+    """Four-node shells by their displacements alone, where there are no incompatible modes either."""
+    locks = elements.family == "shell" and elements.kind == "quad4" and not elements.modes
+    return dataclasses.replace(elements, untied=locks)
+
+
 def _lives(block: ElementBlock, rows: Any) -> list[Any]:
     """Elements (rows: a mask) by their times of birth and death."""
     times = np.column_stack([block.data.get(name, np.zeros(len(block.ids))) for name in ("birth", "death")])
@@ -192,6 +201,7 @@ def _group(model: Model, block: ElementBlock, rows: Any, part: int, method: Fem)
         plane=section.plane if family == "plane" else "",
         thickness=thickness,
         layers=gauss[2] or 2,
+        shear_factor=method.shear_factor or 5.0 / 6.0,
         section={k: v for k, v in parameters.items() if isinstance(v, float)},
         orientation=data.get("orientation"),
         value=data.get("area"),

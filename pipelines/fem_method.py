@@ -64,7 +64,8 @@ class Fem(Section):
     step; cuts: how often a step is halved; steps: number of equal steps to the deck's end; listing: whether
     displacements, reactions and stresses of each step are also written as text, `listing.lst`; integration: of motion
     in time, alpha of hht's; stops: planes that nodes cannot pass; laws: by the number of the deck's material, for what
-    a deck has no card.
+    a deck has no card; shear_factor: of shells, 5/6 unless it is said; a large one, 1000, makes shells that do not
+    shear.
     """
 
     solver: Literal["auto", "pardiso", "cholmod", "scipy", "multigrid"] = "auto"
@@ -78,6 +79,7 @@ class Fem(Section):
     cuts: Annotated[int, Field(ge=0, le=30)] = 8
     steps: Count | None = None
     listing: bool = False
+    shear_factor: Positive | None = None
     path: PathOfLoading | None = None
     integration: Literal["deck", "newmark", "hht", "central"] = "deck"
     alpha: Annotated[float, Field(ge=-1 / 3, le=0)] = -0.05

@@ -20,8 +20,8 @@ def make(folder: Path) -> list[Path]:
             for name, settings, target in (("plate", plate, "dat"), ("block", block, "mcm")):
                 mesh, deck = Path(temporary) / f"{name}.{kind}", folder / f"{kind}.{target}"
                 convert([HERE / f"{name}.geo"], mesh)
-                options = {"particles": "solids", "spacing": 2.0} if target == "mcm" else {}
-                convert([mesh], deck, parts=[1], settings=settings, **options)
+                filled = ("solids", 2.0) if target == "mcm" else (None, None)
+                convert([mesh], deck, parts=[1], particles=filled[0], spacing=filled[1], settings=settings)
                 made.append(deck)
     return made + edited(folder)
 

@@ -179,6 +179,8 @@ def _contacts(faces, i, px, py, pz, z, radius, found, order, chosen):
         row[12] = k
         if overlap <= 0.0 or (m == LOOKED_AT and overlap <= found[order[m - 1], 11]):
             continue
+        if faces.closed[f] and overlap >= 2.0 * radius:  # the other side of a solid that is thinner than the particle
+            continue
         used = spare
         if m < LOOKED_AT:
             m += 1
