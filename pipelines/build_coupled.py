@@ -60,7 +60,7 @@ def coupled_problem(
     offset = int(grain.particles.material.max())
     if how.contact == "face" and not original:
         particles = _facing(grain, paths[0], surface, how, of_particles or Sph(), places)
-        return particles, structure, _exchange(how, structure, surface.nodes, offset)
+        return particles, structure, _exchange(how, structure, surface.nodes, offset, area=surface.area)
     chosen = _method(of_particles or Sph(), how)
     law = contact.law_of_contact(control, chosen)
     whole = _with_nodes(grain, steel, nodes, offset + 1)
@@ -95,7 +95,9 @@ def _all_given(structure: fem.Problem) -> bool:
 SLOWLY = 0.2  # the share of the grain's force that a structure without inertia gets in a period
 
 
-def _exchange(how: Coupling, structure: fem.Problem, nodes: Any, offset: int, *, original: bool = False) -> Exchange:
+def _exchange(
+    how: Coupling, structure: fem.Problem, nodes: Any, offset: int, *, original: bool = False, area: Any = None
+) -> Exchange:
     return Exchange(
         nodes=nodes,
         tolerance=how.tolerance or 0.0,
@@ -103,6 +105,7 @@ def _exchange(how: Coupling, structure: fem.Problem, nodes: Any, offset: int, *,
         relaxation=how.relaxation or (SLOWLY if structure.dynamics is None else 1.0),
         original=original,
         offset=offset,
+        area=area,
     )
 
 

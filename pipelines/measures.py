@@ -146,6 +146,12 @@ def speed(now: Cloud, *, axis: str) -> float:
     return float(np.average(now.field(f"velocity_{axis}"), weights=now.mass))
 
 
+def mass(now: Cloud, *, axis: str, above: float = -math.inf, below: float = math.inf) -> float:
+    """Mass of the particles whose coordinate along an axis is between two bounds."""
+    where = now.x[:, _AXES.index(axis)]
+    return float(now.mass[(where >= above) & (where <= below)].sum())
+
+
 def mean(now: Cloud, *, field: str) -> float:
     """Of a field, by mass."""
     return float(np.average(now.field(field), weights=now.mass))
@@ -261,6 +267,7 @@ MEASURES: dict[str, Callable[..., Any]] = {
     "clusters": clusters,
     "centre": centre,
     "speed": speed,
+    "mass": mass,
     "mean": mean,
     "max": highest,
     "min": lowest,

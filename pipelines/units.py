@@ -33,9 +33,10 @@ class Units:
             "velocity": speed,
             "density": f"{self.mass}/{self.length}^3",
             "mass": f"{self.mass}{per}",
-            **dict.fromkeys(("pressure", "stress", "von_mises"), self.stress),
+            **dict.fromkeys(("pressure", "stress", "von_mises", "contact_pressure"), self.stress),
             **dict.fromkeys(energies, f"{self.energy}{per}"),
             **{f"momentum_{axis}": momentum for axis in "xyz"},
+            "contact_force": f"{self.force}{per}",
             **{f"contact_force_{axis}": f"{self.force}{per}" for axis in "xyz"},
         }
 

@@ -79,8 +79,11 @@ def stick_or_slide(ex, ey, ez, sx, sy, sz, dt, k, c, at_rest, in_motion, weakeni
 
     e: elastic slip; s: slip velocity, both tangential; k, c: stiffness and dashpot; at_rest, in_motion: mu N of both
     kinds; slid: how far it has slid since it last turned, over `weakening` of which the one becomes the other. Heat is
-    the work done on the traction less what the spring stores.
+    the work done on the traction less what the spring stores. Without a load (k = 0, as where bodies part as soon as
+    they have met) nothing resists.
     """
+    if k <= 0.0:
+        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, slid, 0.0
     stored = 0.5 * k * (ex * ex + ey * ey + ez * ez)
     ex += sx * dt
     ey += sy * dt

@@ -38,7 +38,7 @@ class Exchange:
     received that the next period gets, the rest comes later (weak coupling with a structure without inertia, which
     otherwise jumps from under the grain); original: hand back what the
     original programs do, accelerations at the end of the period, none with kernel contact. offset: added to the
-    numbers of the structure's materials, which follow the particles'.
+    numbers of the structure's materials, which follow the particles'. area: (m,) of each node, for frames.
     """
 
     nodes: NDArray[np.int64]
@@ -47,6 +47,7 @@ class Exchange:
     relaxation: float = 1.0
     original: bool = False
     offset: int = 0
+    area: Floats | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,13 +212,23 @@ class Coupled:
     # what it shows
 
     def frame(self) -> Frame:
-        """Particles, nodes and elements; the structure's materials are numbered after the particles'."""
+        """Particles, nodes and elements; the structure's materials are numbered after the particles'.
+
+        Nodes have the force of the grain in the last period, and it by their area: friction is in both.
+        """
         grain, steel = self.particles.frame(), self.structure.frame()
         cells = [
             Cells(c.kind, c.nodes, {**c.data, "material": c.data["material"] + self.exchange.offset})
             for c in steel.cells
         ]
-        return Frame(steel.time, steel.step, grain.particles, steel.nodes, cells)
+        force = np.zeros((len(steel.nodes["position"]), 3))
+        force[self.exchange.nodes] = self.force
+        nodes = steel.nodes | {"contact_force": force}
+        if self.exchange.area is not None:
+            area = np.full(len(force), np.inf)
+            area[self.exchange.nodes] = np.maximum(self.exchange.area, np.finfo(float).tiny)
+            nodes["contact_pressure"] = np.linalg.norm(force, axis=1) / area
+        return Frame(steel.time, steel.step, grain.particles, nodes, cells)
 
     def _interface_energy(self) -> float:
         """What the interface has made: work on the structure less what the particles have done."""

@@ -138,3 +138,11 @@ def test_parameters_are_those_of_the_functions() -> None:
     assert parameters("length") == {"material": False, "axis": True}
     assert parameters("restitution") == {"material": True, "axis": True, "against": False}
     assert all(parameters(name)["material"] in (True, False) for name in MEASURES)
+
+
+def test_the_mass_between_two_heights_is_that_of_the_layers_there() -> None:
+    now = cloud(block(2, 3, 6))
+    layer = 2 * 3 * 2.0 * SPACING**3
+    assert of("mass", now, axis="z") == pytest.approx(6 * layer)
+    assert of("mass", now, axis="z", above=SPACING) == pytest.approx(5 * layer)
+    assert of("mass", now, axis="z", above=SPACING, below=4 * SPACING) == pytest.approx(3 * layer)

@@ -120,6 +120,12 @@ def test_a_point_slides_at_its_limit_and_warms_by_it() -> None:
     assert heat == pytest.approx(0.6 * 1.0 + weaker, rel=0.02)
 
 
+def test_bodies_that_part_as_soon_as_they_meet_have_no_friction() -> None:
+    """No load, no spring: once the traction of the dashpot alone was divided by its stiffness of nothing."""
+    found = stick_or_slide(0.0, 0.0, 0.0, 1.0, 2.0, 0.0, 1e-3, 0.0, 0.3, 0.0, 0.0, 0.1, 0.0)
+    assert found == (0.0,) * 8
+
+
 def test_friction_is_that_of_rest_again_once_the_slip_has_turned() -> None:
     speeds = np.concatenate((np.full(500, 1.0), np.full(500, -1.0)))
     tractions = slide(speeds, 1e-3, 50.0, 1.0, 0.6)[0]

@@ -86,11 +86,14 @@ def test_the_force_at_rest_is_the_weight():
     structure = dataclasses.replace(plate(steps=400, period=0.25), rigid=True, dynamics=None)
     grain = dataclasses.replace(facing(structure, gap=0.5), body_force=(0.0, 0.0, -0.00981), relaxation=0.98)
     grain.v[:] = 0.0
-    coupled = run(drop(structure, grain), 200)
+    coupled = run(drop(structure, grain, area=np.full(len(structure.x), 4.0)), 200)
     weight = 64 * DENSITY * 8.0 * 0.00981
     assert coupled.history()["structure_force_z"] == pytest.approx(-weight, rel=0.005)
     assert coupled.structure.guided
     assert coupled.pending.max() == 0.0
+    nodes = coupled.frame().nodes
+    assert nodes["contact_force"][:, 2].sum() == pytest.approx(-weight, rel=0.005)
+    assert np.allclose(nodes["contact_pressure"], np.linalg.norm(nodes["contact_force"], axis=1) / 4.0, rtol=1e-14)
 
 
 def test_a_rigid_structure_turns_as_its_nodes_are_moved():
