@@ -211,13 +211,19 @@ class Coupled:
     # what it shows
 
     def frame(self) -> Frame:
-        """Particles, nodes and elements; the structure's materials are numbered after the particles'."""
+        """Particles, nodes and elements; the structure's materials are numbered after the particles'.
+
+        Of the nodes also `contact_force` (n, 3): the mean of the last period.
+        """
         grain, steel = self.particles.frame(), self.structure.frame()
         cells = [
             Cells(c.kind, c.nodes, {**c.data, "material": c.data["material"] + self.exchange.offset})
             for c in steel.cells
         ]
-        return Frame(steel.time, steel.step, grain.particles, steel.nodes, cells)
+        on_structure = np.zeros((self.structure.n, 3))
+        on_structure[self.exchange.nodes] = self.force
+        nodes = {**steel.nodes, "contact_force": on_structure}
+        return Frame(steel.time, steel.step, grain.particles, nodes, cells)
 
     def _interface_energy(self) -> float:
         """What the interface has made: work on the structure less what the particles have done."""
