@@ -21,7 +21,6 @@ def test_the_column_spreads_on_the_plate_and_the_plate_bears_it(tmp_path: Path, 
     folder = tmp_path / "sand_box"
     copy("sand_box", folder)
     path = folder / scene
-    path.write_text(path.read_text().replace("spacing: 6,", "spacing: 7.2,"))
     result = run([path], output=folder / "out", options={"render": []})
     assert result["status"] == "done"
     assert result["energy"]["balance_error"] < 0.02
