@@ -1,4 +1,4 @@
-"""Grain between smooth elastic walls: what the floor and the walls get, against the weight and the pressure of a column."""
+"""Grain in an elastic silo: what the floor and the walls get, against the weight of a column."""
 
 from __future__ import annotations
 
