@@ -49,3 +49,26 @@ def test_thick_cylinder(tmp_path: Path) -> None:
     at_120 = at(Cloud(frames.arrays(None, 12)), point=(200.0, 0.0, 0.0), field="displacement_x")
     assert frames.times[12] == pytest.approx(120.0)
     assert at_120 == pytest.approx(0.07040330516559817, rel=0.006)
+
+
+def test_plate(tmp_path: Path) -> None:
+    clamped = _moved("plate", tmp_path / "clamped", "scene.yaml", (0.0, 0.0, 0.0), "displacement_z")
+    assert clamped == pytest.approx(-0.6579664, rel=1e-3)
+    assert load(tmp_path / "clamped/out").history["reaction_z"][-1] == pytest.approx(2.5, rel=1e-7)
+    held = _moved("plate", tmp_path / "supported", "supported_scene.yaml", (0.0, 0.0, 0.0), "displacement_z")
+    assert held == pytest.approx(-2.11224, rel=5e-4)
+
+
+def test_elastoplastic_bar(tmp_path: Path) -> None:
+    _moved("elastoplastic_bar", tmp_path, "pulled_scene.yaml", (0.0, 0.0, 0.0), "displacement_x")
+    strain = (2.1e5 * 0.01 - 250.0) / (2.1e5 + 2000.0)
+    assert _root_force(tmp_path / "out", 0) == pytest.approx(-100.0 * (250.0 + 2000.0 * strain), rel=1e-6)
+    options = {"numbers.n": 2, "fem.dilatation": "plain", "render": []}
+    run([tmp_path / "elastoplastic_bar/scene.yaml"], output=tmp_path / "bent", options=options)
+    assert _root_force(tmp_path / "bent", 2) == pytest.approx(1285.292, rel=2e-6)  # CalculiX 2.20, C3D8, same mesh
+
+
+def _root_force(folder: Path, axis: int) -> float:
+    frame = load(folder).arrays()
+    place = Cloud(frame).x - frame["displacement"]
+    return float(frame["reaction"][np.abs(place[:, 0]) < 1e-6, axis].sum())
