@@ -1,5 +1,5 @@
-// Half of a strip of soil, 10 x 5, under a footing of half width 1 (symmetry at x = 0). Quadrilaterals of eight nodes, finer
-// towards the footing's edge. Lengths in m.
+// Half of a strip of soil, 10 x 5, under a footing of half width 1 (symmetry at x = 0). Quadrilaterals, finer towards the
+// footing's edge. Lengths in m.
 If (!Exists(n)) n = 8; EndIf // elements under half the footing
 w = 1; l = 10; h = 5;
 Point(1) = {0, 0, 0};
@@ -15,5 +15,8 @@ Physical Curve("footing") = {1};
 Physical Curve("middle") = {bed[3]};
 Physical Curve("side") = {bed[6]};
 Physical Curve("base") = {bed[0], bed[4]};
-Mesh.ElementOrder = 2;
-Mesh.SecondOrderIncomplete = 1;
+If (!Exists(quadratic)) quadratic = 0; EndIf
+If (quadratic) // eight nodes
+  Mesh.ElementOrder = 2;
+  Mesh.SecondOrderIncomplete = 1;
+EndIf

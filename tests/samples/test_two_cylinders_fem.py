@@ -36,7 +36,7 @@ def test_the_elastic_impact_is_that_of_finite_differences(tmp_path: Path) -> Non
 
 
 def test_the_plastic_impact_beside_the_particles(tmp_path: Path) -> None:
-    found = _run(tmp_path, "scene.yaml", **{"numbers.n": 10, "end_time": 5.0, "fem.steps": 100})
+    found = _run(tmp_path, "scene.yaml", **{"numbers.n": 20, "end_time": 5.0, "fem.steps": 100})
     history = found.history
     rows = np.genfromtxt(tmp_path / "sample/reference/centre.csv", delimiter=",", comments="#", skip_header=3)
     speed = np.interp(rows[:, 0], history["time"], history["momentum_x"] / MASS)[:11]
