@@ -68,6 +68,23 @@ def test_elastoplastic_bar(tmp_path: Path) -> None:
     assert _root_force(tmp_path / "bent", 2) == pytest.approx(1285.292, rel=2e-6)  # CalculiX 2.20, C3D8, same mesh
 
 
+def test_strip_footing(tmp_path: Path) -> None:
+    """Prandtl's c Nc, from above, on elements of four nodes with mean dilatation; it flows."""
+    copy("strip_footing", tmp_path / "sample")
+    options = {"numbers.linear": 1, "fem.dilatation": "mean", "output.every": 0.5, "render": []}
+    result = run([tmp_path / "sample/scene.yaml"], output=tmp_path / "out", options=options)
+    assert result["status"] == "done"
+    frames = load(tmp_path / "out")
+    bearing = []
+    for k in (1, 2):
+        frame = frames.arrays(None, k)
+        place = Cloud(frame).x - frame["displacement"]
+        under = (np.abs(place[:, 1]) < 1e-6) & (place[:, 0] < 1.0 + 1e-6)
+        bearing.append(-float(frame["reaction"][under, 1].sum()) / 490e3)
+    assert np.pi + 2 < bearing[1] < 1.03 * (np.pi + 2)
+    assert bearing[1] == pytest.approx(bearing[0], rel=2e-3)
+
+
 def _root_force(folder: Path, axis: int) -> float:
     frame = load(folder).arrays()
     place = Cloud(frame).x - frame["displacement"]
