@@ -32,14 +32,16 @@ def test_a_bar_bounces_off_a_plane() -> None:
     assert solver.energy_report()["balance_error"] < 0.01
 
 
-def test_a_plane_holds_a_block_and_does_not_pull(  ) -> None:
+def test_a_plane_holds_a_block_and_does_not_pull() -> None:
     """A block that lies on a plane, pressed on to it: what is given way to is a part of its own shortening; pulled, it goes."""
     x, nodes, number = quads(4, 4, lambda r, s: np.stack([r, s, 0 * r], -1))
     law = Elastic.from_engineering(1e3, 0.0)
     fixed = held(len(x), (slice(None), "z"), (number[0], "x"))
     elements = group("quad4", "plane", nodes, law, plane="strain")
     top = number[:, -1]
-    spring = fem.Elements("point1", "spring", top[:1, None], np.array([99]), 2, None, value=np.array([[0, 1e-3, 0, 0, 0, 0.0]]))
+    spring = fem.Elements(
+        "point1", "spring", top[:1, None], np.array([99]), 2, None, value=np.array([[0, 1e-3, 0, 0, 0, 0.0]])
+    )
     stop = (fem.Stop((0, 0, 0), (0, 1, 0), 100.0),)
     share = np.array([0.5, 1, 1, 1, 0.5]) / 4
     push = fem.NodalLoad(top, np.ones(5, int), -share)
