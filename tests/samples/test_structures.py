@@ -85,6 +85,38 @@ def test_strip_footing(tmp_path: Path) -> None:
     assert bearing[1] == pytest.approx(bearing[0], rel=2e-3)
 
 
+def _pressed(rate: float, end: float, steps: int) -> float:
+    """Stress of one element of the sample's visco-plastic law under a rate of axial strain, its sides free."""
+    young, k, slope, flow, gamma, hardening = 1000.0, 0.05, 0.05, 0.01, 0.01, 20.0
+    along, up = 1.0 / np.sqrt(3.0) - flow, 1.0 / np.sqrt(3.0) - slope
+    stress, kappa, dt = 0.0, 0.0, end / steps
+    for _ in range(steps):
+        stress -= young * rate * dt
+        over = -up * stress - k - hardening * kappa
+        if over > 0.0:
+            grown = gamma * dt / k * over / (1.0 + gamma * dt / k * (along * young * up + hardening))
+            kappa += grown
+            stress += young * grown * along
+    return stress
+
+
+def test_asphalt(tmp_path: Path) -> None:
+    sample = copy("asphalt_slab", tmp_path / "sample")
+    run([sample / "block_scene.yaml"], output=tmp_path / "block", options={"render": []})
+    frames = load(tmp_path / "block")
+    for k in (4, 10, 20):
+        found = frames.arrays(None, k)["stress"][:, 2]
+        np.testing.assert_allclose(found, _pressed(0.01, frames.times[k], 5000), rtol=2e-4)
+    result = run([sample / "scene.yaml"], output=tmp_path / "out", options={"numbers.n": 4, "render": []})
+    assert result["energy"]["balance_error"] < 0.01
+    frames = load(tmp_path / "out")
+    ruts = [at(Cloud(frames.arrays(None, 4 * k)), point=(0.0, 100.0, 0.0), field="displacement_y") for k in range(11)]
+    grown = -np.diff(ruts)
+    assert grown[0] > 0.02
+    assert (grown[1:] < grown[:-1]).all()
+    assert (grown > 0.0).all()
+
+
 def _root_force(folder: Path, axis: int) -> float:
     frame = load(folder).arrays()
     place = Cloud(frame).x - frame["displacement"]

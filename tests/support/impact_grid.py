@@ -1,4 +1,4 @@
-"""The impact of the samples of two cylinders by finite differences: a reference that shares nothing with the solvers."""
+"""The impact of the samples of two cylinders by finite differences: it shares nothing with the solvers."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from zrno.solvers.materials import Elastic
 
 
 def test_a_bar_bounces_off_a_plane() -> None:
-    """Trusses that start 0.2 away at speed 0.01: pressed from t = 0.2 / v on, for 2 L / c, and gone as fast as they came."""
+    """Trusses that start a gap away at speed v: they press from then on, for 2 L / c, with rho c v."""
     n, speed, gap = 100, 0.01, 0.002
     x = np.column_stack([np.linspace(-1.0, 0.0, n + 1), np.zeros((n + 1, 2))])
     nodes = np.column_stack([np.arange(n), np.arange(1, n + 1)])
@@ -33,19 +33,14 @@ def test_a_bar_bounces_off_a_plane() -> None:
 
 
 def test_a_plane_holds_a_block_and_does_not_pull() -> None:
-    """A block that lies on a plane, pressed on to it: what is given way to is a part of its own shortening; pulled, it goes."""
+    """A block on a plane, pressed: the plane gives way by little of its shortening; pulled, it goes."""
     x, nodes, number = quads(4, 4, lambda r, s: np.stack([r, s, 0 * r], -1))
     law = Elastic.from_engineering(1e3, 0.0)
     fixed = held(len(x), (slice(None), "z"), (number[0], "x"))
     elements = group("quad4", "plane", nodes, law, plane="strain")
     top = number[:, -1]
-    spring = fem.Elements(
-        "point1", "spring", top[:1, None], np.array([99]), 2, None, value=np.array([[0, 1e-3, 0, 0, 0, 0.0]])
-    )
-    stop = (fem.Stop((0, 0, 0), (0, 1, 0), 100.0),)
-    share = np.array([0.5, 1, 1, 1, 0.5]) / 4
-    push = fem.NodalLoad(top, np.ones(5, int), -share)
-    solver, _ = solve(problem(x, (elements, spring), fixed, nodal_loads=(push,), stops=stop))
+    value = np.array([[0, 1e-3, 0, 0, 0, 0.0]])
+    spring = fem.Elements("point1", "spring", top[:1, None], np.array([99]), 2, None, value=value)
     assert moved(solver, top[2], 1) == pytest.approx(-1e-3, rel=0.02)
     assert -1e-3 * 0.02 < moved(solver, number[2, 0], 1) < 0.0
     assert solver.assembly.stops.force(solver.shape.u)[1] == pytest.approx(1.0, rel=1e-4)  # type: ignore[union-attr]
