@@ -41,6 +41,9 @@ def test_a_plane_holds_a_block_and_does_not_pull() -> None:
     top = number[:, -1]
     value = np.array([[0, 1e-3, 0, 0, 0, 0.0]])
     spring = fem.Elements("point1", "spring", top[:1, None], np.array([99]), 2, None, value=value)
+    stop = (fem.Stop((0, 0, 0), (0, 1, 0), 100.0),)
+    push = fem.NodalLoad(top, np.ones(5, int), -np.array([0.5, 1, 1, 1, 0.5]) / 4)
+    solver, _ = solve(problem(x, (elements, spring), fixed, nodal_loads=(push,), stops=stop))
     assert moved(solver, top[2], 1) == pytest.approx(-1e-3, rel=0.02)
     assert -1e-3 * 0.02 < moved(solver, number[2, 0], 1) < 0.0
     assert solver.assembly.stops.force(solver.shape.u)[1] == pytest.approx(1.0, rel=1e-4)  # type: ignore[union-attr]
