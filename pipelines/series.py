@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import re
 import unicodedata
 from collections.abc import Callable, Mapping
@@ -59,12 +60,17 @@ class Series:
         """Times of the frames, ascending."""
         return [time for time, _ in self._frames]
 
-    def write(self, frame: Frame, rows: Rows = slice(None)) -> None:
-        """Append a frame. rows: the particles that belong to this series (a slice, mask or indices), or elements."""
+    def write(self, frame: Frame, rows: Rows = slice(None), *, twin: Series | None = None) -> None:
+        """Append a frame. rows: the particles that belong to this series (a slice, mask or indices), or elements.
+
+        twin: a series that has just written the same frame: its file is linked rather than written again.
+        """
         suffix = SUFFIX[self.format] if self.of_cells else self.format
         file = f"{FOLDER}/{self.name}_{len(self._frames):05d}.{suffix}"
         (self.directory / FOLDER).mkdir(parents=True, exist_ok=True)
-        if self.of_cells:
+        if twin is not None and _linked(self.directory / twin._frames[-1][1], self.directory / file):
+            pass
+        elif self.of_cells:
             self._write_cells(self.directory / file, frame, rows)
         else:
             arrays = {name: values[rows] for name, values in frame.particles.items()}
@@ -113,6 +119,16 @@ class Series:
             f"{''.join(lines)}</Collection>\n</VTKFile>\n"
         )
         write_atomically(self.path, [text.encode()])
+
+
+def _linked(source: Path, target: Path) -> bool:
+    """Whether a second name could be given to a file, in place of what has it; some disks know no such thing."""
+    try:
+        target.unlink(missing_ok=True)
+        os.link(source, target)
+    except OSError:
+        return False
+    return True
 
 
 def read_list(path: Path) -> list[tuple[float, str]]:
@@ -164,6 +180,7 @@ class ResultSeries:
         self._directory = Path(directory)
         self._options: dict[str, Any] = {"format": format, "precision": precision}
         self._series: list[tuple[Series, Rows]] = []
+        self._counts: dict[bool, int] = {}
 
     def start(self, solver: Solver) -> None:
         """The first frame; after a resume only where there is none, so that times are those of an unbroken run."""
@@ -174,6 +191,7 @@ class ResultSeries:
             of[False] = frame.particles["material"]
         if frame.cells:
             of[True] = np.concatenate([cells.data["material"] for cells in frame.cells])
+        self._counts = {cells: len(material) for cells, material in of.items()}
         self._series = [
             (Series(self._directory, name, of_cells=cells, **self._options), rows)
             for cells, material in of.items()
@@ -197,9 +215,15 @@ class ResultSeries:
             self._write(solver.frame())
 
     def _write(self, frame: Frame) -> None:
+        written: dict[tuple[bool, int], Series] = {}
         for series, rows in self._series:
-            if frame.time not in series.times[-1:]:
-                series.write(frame, rows)
+            if frame.time in series.times[-1:]:
+                continue
+            whole = series.of_cells, self._counts[series.of_cells]
+            alone = isinstance(rows, slice) and rows in (slice(None), slice(0, whole[1]))
+            series.write(frame, rows, twin=written.get(whole) if alone else None)
+            if alone:
+                written[whole] = series
 
 
 def _rows_of(material: NDArray[Any], names: Mapping[int, str], together: str) -> dict[str, Rows]:

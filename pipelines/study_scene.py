@@ -180,8 +180,8 @@ class Analytic(Section):
 
 class Peer(Section):
     """Another program on the same meshes, beside ours. ccx: an input file of CalculiX beside the scene, which includes
-    `mesh.inp` and prints what is measured at the set AT; elements: types that the meshes are given, one after another,
-    each with parameters of the .geo script that its mesh needs.
+    `mesh.inp` and prints what is measured at the set AT; elements: types that the meshes are given, one by one, each
+    with parameters of the .geo script that its mesh needs.
     """
 
     ccx: str

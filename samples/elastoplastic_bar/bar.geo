@@ -10,6 +10,7 @@ Physical Volume("bar") = {out[1]};
 Physical Surface("root") = {side[1]};
 Physical Surface("tip") = {out[0]};
 Physical Curve("edge") = {1};       // for a bar that is pulled: nothing turns
+Physical Point("corner") = {1};
 If (!Exists(quadratic)) quadratic = 0; EndIf
 If (quadratic) // mid-side nodes, for another program's elements
   Mesh.ElementOrder = 2;

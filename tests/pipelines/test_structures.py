@@ -199,3 +199,17 @@ def test_forces_that_do_nothing_are_told(scene: Path, tmp_path: Path) -> None:
     (tmp_path / "strip.yaml").write_text(SETTINGS.replace("dimension: 3", "dimension: 2"))
     result = run([scene], output=tmp_path / "out")
     assert any("2 forces or moments on degrees of freedom that are held" in w for w in result["warnings"])
+
+
+def test_integration_is_of_motion(scene: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="the deck is static"):
+        run([scene], output=tmp_path / "out", options={"fem.integration": "central"})
+    with pytest.raises(InputError, match="no such material"):
+        run([scene], output=tmp_path / "out", options={"fem.laws": {7: {"law": "perzyna", "k": 1.0, "rate": 1.0}}})
+    (tmp_path / "strip.yaml").write_text(SETTINGS.replace("fem: {steps: 4}", "fem: {steps: 4, analysis: dynamic}"))
+    said = {}
+    for name in ("newmark", "hht", "central"):
+        run([scene], output=tmp_path / name, options={"fem.integration": name})
+        said[name] = load(tmp_path / name).arrays(None, -1)["displacement"][:, 2].min()
+    assert len(set(said.values())) == 3
+    assert max(said.values()) < 0.0

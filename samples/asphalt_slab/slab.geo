@@ -1,0 +1,15 @@
+// A layer of asphalt across the wheel's way, 1000 x 100, half of it (symmetry at x = 0); the tyre is 200 wide. Plane strain, mm.
+If (!Exists(n)) n = 8; EndIf // elements through the layer
+Point(1) = {0, 0, 0};
+Point(2) = {100, 0, 0};
+Point(3) = {500, 0, 0};
+Line(1) = {1, 2};
+Line(2) = {2, 3};
+Transfinite Curve{1} = n + 1;
+Transfinite Curve{2} = 2 * n + 1 Using Progression 1.08^(8 / n);
+layer[] = Extrude {0, 100, 0} { Curve{1, 2}; Layers{n}; Recombine; };
+Physical Surface("asphalt") = {layer[1], layer[5]};
+Physical Curve("wheel") = {layer[0]};
+Physical Curve("middle") = {layer[3]};
+Physical Curve("side") = {layer[6]};
+Physical Curve("base") = {1, 2};
