@@ -391,11 +391,11 @@ def test_an_interrupt_in_the_middle_of_a_frame_waits_for_its_end(
     write_frame = Series.write
     calls = []
 
-    def interrupted(self: Series, *args: Any) -> None:
+    def interrupted(self: Series, *args: Any, **more: Any) -> None:
         calls.append(self.name)
         if len(calls) == 10:  # the first of three series of the fourth frame
             os.kill(os.getpid(), signal.SIGINT)
-        write_frame(self, *args)
+        write_frame(self, *args, **more)
 
     monkeypatch.setattr(Series, "write", interrupted)
     source = unbroken.parent / "impact.mcm"
@@ -408,7 +408,7 @@ def test_an_interrupt_in_the_middle_of_a_frame_waits_for_its_end(
 
 
 def test_a_second_interrupt_does_not_wait(unbroken: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def impatient(self: Series, *args: Any) -> None:
+    def impatient(self: Series, *args: Any, **more: Any) -> None:
         os.kill(os.getpid(), signal.SIGINT)
         os.kill(os.getpid(), signal.SIGINT)
         pytest.fail("not reached")
@@ -466,7 +466,7 @@ def test_a_diverging_run_says_where_and_keeps_what_it_computed(tmp_path: Path) -
 
 
 def test_a_run_that_cannot_write_its_results_has_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(self: Series, *args: Any) -> None:
+    def full(self: Series, *args: Any, **more: Any) -> None:
         raise OSError(errno.ENOSPC, "No space left on device", str(self.path))
 
     monkeypatch.setattr(Series, "write", full)

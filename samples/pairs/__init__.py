@@ -1,0 +1,1 @@
+"""Pairs of decks, and the script that makes them."""
