@@ -19,7 +19,7 @@ from zrno.pipelines.wetted import Wetted, wetted
 from zrno.solvers import fem, sph
 from zrno.solvers.coupling import Exchange
 from zrno.solvers.materials import Elastic
-from zrno.solvers.sph.facing import Facets
+from zrno.solvers.sph.surface import Facets
 from zrno.translators.model import Material, Model
 from zrno.translators.text import Fault, InputError
 from zrno.translators.yaml_marks import Place

@@ -3,26 +3,21 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 from typing import Any
 
 import numpy as np
 
 from zrno.pipelines.fem_method import Fem
-from zrno.pipelines.laws import overstress_of, structural_law_of
+from zrno.pipelines.fem_refusals import axes_of_group, law_of_group, refusals
 from zrno.solvers import fem
-from zrno.solvers.errors import Unsupported
-from zrno.solvers.materials import axes_of
 from zrno.translators.control import FemControl
 from zrno.translators.elements import TABLE
-from zrno.translators.model import ElementBlock, FaceLoad, Material, Model, NodalLoad, Section
+from zrno.translators.model import ElementBlock, FaceLoad, Model, NodalLoad, Section
 from zrno.translators.text import Fault, InputError
 
 _GEOMETRY = {0: fem.SMALL, 1: fem.SMALL, 2: fem.TOTAL, 3: fem.UPDATED, 4: fem.UPDATED, 5: fem.UPDATED}
 _MODES = {"hex8": 12, "quad4": 4}  # enhanced strains where a deck asks for incompatible modes
 _FACES = {3: "tri3", 4: "quad4", 6: "tri6", 8: "quad8", 9: "quad9"}
-_SHELLS = ("tri3", "quad4", "quad8", "quad9")
-_COMPUTED = ("solid", "plane", "truss", "beam", "shell", "spring", "mass")
 
 
 def structure_problem(model: Model, path: str, method: Fem | None = None, *, original: bool = False) -> fem.Problem:
@@ -80,51 +75,6 @@ def structure_problem(model: Model, path: str, method: Fem | None = None, *, ori
     )  # fmt: skip
 
 
-def refusals(model: Model, path: str, method: Fem) -> list[Fault]:
-    """What a deck asks and is not computed, each with its place. path: of the deck; method: the scene's."""
-    control = model.fem_control
-    assert control is not None
-    known = ", ".join(map(str, model.materials))
-    faults = [
-        Fault(path, 1, 1, "fem.laws: no such material", str(number), known)
-        for number in method.laws
-        if number not in model.materials
-    ]
-    if method.integration != "deck" and not control.dynamic:
-        message = "fem.integration is of motion, and the deck is static"
-        faults.append(Fault(path, 1, 1, message, method.integration, "a dynamic analysis (NDIN 1)"))
-    for part in model.parts.values():
-        section = model.sections.get(part.section or -1)
-        line = section.source.line if section and section.source else 1
-        if section and section.kind not in _COMPUTED:
-            faults.append(Fault(path, line, 1, f"elements of the family {section.kind} are not computed yet", "",
-                                ", ".join(_COMPUTED)))  # fmt: skip
-        material = model.materials.get(part.material or -1)
-        if material is None:
-            continue
-        at = material.source.line if material.source else 1
-        try:
-            _law(model, material, None if section is None else _axes(section), method)
-        except (Unsupported, ValueError) as error:
-            faults.append(Fault(path, at, 1, f"material {material.id}: {error}", "", "a law that is computed"))
-    moving = control.dynamic or control.eigenvalues or control.iteration >= 60
-    for block in model.blocks:
-        timed = [name for name in ("birth", "death") if np.any(block.data.get(name, 0.0))]
-        if timed and moving:
-            said = f"{' and '.join(timed)} of {block.kind} elements in motion, vibration or on a path that is found"
-            faults.append(Fault(path, 1, 1, f"{said} is not computed", "", "statics with loads that are given"))
-        if block.family == "shell" and block.kind not in _SHELLS:
-            message = f"shells of the kind {block.kind} are not computed yet"
-            faults.append(Fault(path, 1, 1, message, "", "three, four, eight or nine nodes"))
-    for load in model.nodal_loads:
-        if load.kind == "temperature":
-            at = load.source.line if load.source else 1
-            faults.append(Fault(path, at, 1, "temperatures are not computed yet", "", "a deck without them"))
-    if control.restart == 1:
-        faults.append(Fault(path, 1, 1, "a restart of PAK's own files is not read", "IREST 1", "--resume"))
-    return list(dict.fromkeys(faults))
-
-
 def _iatyp(section: Section) -> int:
     return abs(int(section.native.get("IATYP", 0)))
 
@@ -177,7 +127,7 @@ def _group(model: Model, block: ElementBlock, rows: Any, part: int, method: Fem)
     gauss = tuple(int(native.get(f"NGAUS{axis}", 0)) for axis in "XYZ")
     ids = block.ids[rows]
     solid = family == "solid"
-    law = _law(model, material, _axes(section), method)
+    law = law_of_group(model, material, axes_of_group(section), method)
     thickness = data.get("thickness")
     if thickness is None and "thickness" in parameters:
         thickness = np.full(len(ids), parameters["thickness"])
@@ -208,22 +158,6 @@ def _group(model: Model, block: ElementBlock, rows: Any, part: int, method: Fem)
         birth=data.get("birth"),
         death=data.get("death"),
     )
-
-
-def _law(model: Model, material: Material, axes: Any, method: Fem) -> Any:
-    said = method.laws.get(material.id)
-    return structural_law_of(material, model.curves, axes) if said is None else overstress_of(material, said)
-
-
-def _axes(section: Section) -> Any:
-    """Axes of the material of a group: of solids by its card, of plane elements by its angle BETA; None without."""
-    if "axes" in section.native and any(section.native["axes"]):
-        axes = section.native["axes"]
-        return axes_of(axes[:3], axes[3:])
-    if section.kind == "plane" and (angle := math.radians(section.native.get("BETA", 0.0))):
-        c, s = math.cos(angle), math.sin(angle)
-        return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-    return None
 
 
 def _counter_clockwise(model: Model, kind: str, nodes: Any) -> Any:

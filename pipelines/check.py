@@ -112,8 +112,8 @@ def _sound(
             except ValueError as error:
                 row["warnings"].append(f"{path}: cannot be run: {error}")
     if model.fem_control is not None:
-        from zrno.pipelines.build_fem import refusals as of_structure
         from zrno.pipelines.fem_method import Fem
+        from zrno.pipelines.fem_refusals import refusals as of_structure
 
         row["warnings"] += map(_not_yet, sorted(of_structure(model, str(path), Fem())))
     return row

@@ -107,3 +107,15 @@ def stick_or_slide(ex, ey, ez, sx, sy, sz, dt, k, c, at_rest, in_motion, weakeni
     work = (tx * sx + ty * sy + tz * sz) * dt
     heat = work + stored - 0.5 * k * (ex * ex + ey * ey + ez * ez)
     return tx, ty, tz, ex, ey, ez, slid, heat
+
+
+@kernel
+def rub(ex, ey, ez, sx, sy, sz, dt, load, force, k, mass, h, static, kinetic, slid):
+    """`stick_or_slide` of a particle on a wall, whose normal stiffness k, mass and h make the spring and the dashpot.
+
+    load: the normal force that friction knows of (`follow`), force: that now; static, kinetic: coefficients.
+    """
+    return stick_or_slide(
+        ex, ey, ez, sx, sy, sz, dt, min(max(load, 1e-6 * force) / (ELASTIC * h), STICK * k),
+        DASHPOT * math.sqrt(k * mass), static * load, kinetic * load, WEAKENING * h, slid,
+    )  # fmt: skip

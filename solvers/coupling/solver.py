@@ -63,7 +63,10 @@ class Coupled:
     """A structure and particles. `advance` takes one period; between calls both are at `time`."""
 
     def __init__(self, structure: fem.Solver, particles: sph.Solver, exchange: Exchange) -> None:
+        if particles.driven is None:
+            raise ValueError("the particles have neither driven nodes nor facets")
         self.structure, self.particles, self.exchange = structure, particles, exchange
+        self._driven = particles.driven
         p = particles.problem
         self.problem = CoupledProblem(structure.problem.end_time, p.dimension, p.step_factor)
         self.threads = particles.threads
@@ -168,7 +171,7 @@ class Coupled:
 
     def _exchange(self, force: Floats) -> tuple[float, Floats]:
         """One structural step under these forces (m, 3), the particles after it; the work done and their impulse."""
-        s, p, nodes = self.structure, self.particles, self.exchange.nodes
+        s, nodes = self.structure, self.exchange.nodes
         u = s.shape.u[nodes, :3]
         start, before = s.time, np.zeros_like(force) if s.loads.contact is None else s.loads.contact[nodes, :3]
         self._press(force)
@@ -176,7 +179,7 @@ class Coupled:
         self._moved = moved = s.shape.u[nodes, :3] - u
         mean = force if s.moving else 0.5 * (force + before)
         self._follow(s.time - start)
-        return float(np.sum(mean * moved)), p.take_impulse()
+        return float(np.sum(mean * moved)), self._driven.take_impulse()
 
     def _press(self, force: Floats, *, at_once: bool = True) -> None:
         loads = np.zeros((self.structure.n, 6))
@@ -195,7 +198,7 @@ class Coupled:
         now = s.problem.x[self.exchange.nodes] + s.shape.u[self.exchange.nodes, :3]
         left = s.time - p.time
         began = time.perf_counter()
-        p.drive((now - p.driven.read("x")) / (left if left > 0.0 else period))
+        self._driven.go((now - self._driven.read("x")) / (left if left > 0.0 else period))
         while p.time < s.time:
             p.advance(s.time, SLICE)
         self.seconds["particles"] += time.perf_counter() - began
@@ -206,8 +209,8 @@ class Coupled:
         self._press(self.force, at_once=False)
         self._lead()
         self._follow(s.time - start)
-        p.take_impulse()
-        self.force = p.driven.read("c") if p.problem.apart else np.zeros_like(self.force)
+        self._driven.take_impulse()
+        self.force = self._driven.read("c") if p.problem.apart else np.zeros_like(self.force)
 
     # what it shows
 
@@ -232,7 +235,7 @@ class Coupled:
 
     def _interface_energy(self) -> float:
         """What the interface has made: work on the structure less what the particles have done."""
-        return self.work + self.particles.given_work
+        return self.work + self._driven.work
 
     def energies(self) -> dict[str, float]:
         """Energies of both, without what they exchange."""

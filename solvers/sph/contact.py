@@ -11,11 +11,11 @@ import numpy as np
 from ..contact import pinball, potential
 from ..contact.friction import DASHPOT, STICK, Coulomb, Drag
 from ..materials import sound_speed
-from .facing import Surface
 from .problem import Problem
 from .slip import CoulombPairs, DragPairs
 from .smoothing import Shape
 from .state import Arrays, Floats
+from .surface import Surface
 from .walls import Walls
 
 

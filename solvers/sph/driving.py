@@ -6,6 +6,8 @@ step, as the momentum of the others is: between two synchronised states what gra
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,6 +15,7 @@ from ..jit import kernel
 from .across import interface_force
 from .particle import DRIVEN
 from .state import State
+from .surface import Surface
 
 Floats = NDArray[np.float64]
 
@@ -49,8 +52,8 @@ def add_impulse(i0, i1, duration, arrays):
                 arrays.impulse[k, i] += duration * arrays.thrust[k, i]
 
 
-class Driven:
-    """The driven particles of a state, in the order of their numbers."""
+class Nodes:
+    """The driven particles of a state as it stands, in the order of their numbers."""
 
     def __init__(self, state: State, n: int) -> None:
         self._state = state
@@ -68,3 +71,51 @@ class Driven:
         """Set a row of vectors; values: (m, 3) or a number."""
         rows = self._state.rows(name)
         rows[:, self._places] = values if np.isscalar(values) else np.asarray(values).T[: len(rows)]
+
+
+class Driven:
+    """What a structure moves of a run, particles or facets: to be read and set between two steps.
+
+    given: work of what moves it, up to where its impulse was last taken.
+    """
+
+    def __init__(self, state: State, n: int, surface: Surface | None) -> None:
+        self._state, self._n, self._surface = state, n, surface
+        self.given = 0.0
+
+    @property
+    def _rows(self) -> Nodes | Surface:
+        return self._surface or Nodes(self._state, self._n)
+
+    def read(self, name: str) -> Floats:
+        """(m, 3) of its nodes: x, u (velocity), impulse; of particles any row of vectors."""
+        return self._rows.read(name)
+
+    def go(self, velocity: Floats) -> None:
+        """From here on at these velocities (m, 3)."""
+        self.take_impulse()
+        self._rows.write("u", velocity)
+
+    def take_impulse(self) -> Floats:
+        """(m, 3) impulse on the nodes since it was last taken."""
+        rows = self._rows
+        impulse = rows.read("impulse")
+        self.given -= float(np.sum(impulse * rows.read("u")))
+        rows.write("impulse", 0.0)
+        return impulse
+
+    def kept(self) -> dict[str, Any]:
+        """What a checkpoint holds of it beside the particles' rows."""
+        return {"given": self.given, **({} if self._surface is None else self._surface.state())}
+
+    def restore(self, data: dict[str, Any]) -> None:
+        """Go on from a checkpoint."""
+        self.given = float(data["given"])
+        if self._surface is not None:
+            self._surface.restore(data)
+
+    @property
+    def work(self) -> float:
+        """Work of what moves it."""
+        rows = self._rows
+        return self.given - float(np.sum(rows.read("impulse") * rows.read("u")))

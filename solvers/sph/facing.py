@@ -6,27 +6,21 @@ surface are one contact, wherever their edges are. Friction remembers two contac
 acts at the particle's centre, as if the facet reached there: what lies on a plate that turns goes round with it, and
 the moment of the friction goes to the nodes.
 
-What a facet feels goes to its nodes by the place of the contact. Each pair keeps the impulses of its nodes; they are
-added up, in the order of the list, when somebody asks: the result does not depend on threads.
+What a facet feels goes to its nodes by the place of the contact: each pair keeps the impulses of its nodes (`surface`
+adds them up).
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..contact.facet_search import candidates
 from ..contact.facets import facet_push, nearest_on_segment, nearest_on_triangle, normal_of_triangle
-from ..contact.friction import DASHPOT, ELASTIC, FORGET, STICK, WEAKENING, Coulomb, follow, stick_or_slide
+from ..contact.friction import FORGET, follow, rub
 from ..jit import kernel
 from .across import CLOSING, stable_step
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 MOST = 3  # contacts of a particle at once
 LOOKED_AT = 12  # facets that it may overlap
@@ -34,21 +28,6 @@ SAME = 0.85  # cosine between normals from which on two facets are one surface
 RISE = 0.05  # of the radius, that an edge must rise above a tangent plane to be another contact
 SLOTS = 2  # contacts that friction remembers
 TINY = 1e-30
-
-
-@dataclass(frozen=True, slots=True)
-class Facets:
-    """The surface of a structure that particles touch.
-
-    nodes: (m, 3) places at the start; corners: (f, 3) triangles, or (f, 2) segments; half: (f,) half the thickness;
-    closed: (f,) whether only the side of the normal is outside (of a segment: the right of its way).
-    """
-
-    nodes: Floats
-    corners: Ints
-    half: Floats
-    closed: NDArray[np.bool_]
-    friction: Coulomb | None = None
 
 
 class Faces(NamedTuple):
@@ -332,11 +311,9 @@ def face_force(i0, i1, z, faces, law, damping, slip, heat, dt, cx, arrays):
                         ez -= out * nz
                         load = follow(slip[at + size - 1, i], force, dt, wave, arrays.h[i])
                         slip[at + size - 1, i] = load
-                        tx, ty, tz, ex, ey, ez, slid, lost = stick_or_slide(
-                            ex, ey, ez, sx - along * nx, sy - along * ny, sz - along * nz, dt,
-                            min(max(load, 1e-6 * force) / (ELASTIC * arrays.h[i]), STICK * k),
-                            DASHPOT * math.sqrt(k * mass), faces.static * load, faces.kinetic * load,
-                            WEAKENING * arrays.h[i], slip[at + size - 2, i],
+                        tx, ty, tz, ex, ey, ez, slid, lost = rub(
+                            ex, ey, ez, sx - along * nx, sy - along * ny, sz - along * nz, dt, load, force, k, mass,
+                            arrays.h[i], faces.static, faces.kinetic, slip[at + size - 2, i],
                         )  # fmt: skip
                         slip[at + d, i] = ex
                         slip[at + d + 1, i] = ey
@@ -403,97 +380,3 @@ def move(thread, threads, dt, faces):
     for node in range(m * thread // threads, m * (thread + 1) // threads):
         for axis in range(3):
             faces.x[axis, node] += faces.v[axis, node] * dt
-
-
-@kernel
-def _to_nodes(corners, rows, impulse, d, total):
-    for pair in range(len(rows)):
-        for q in range(d):
-            node = corners[rows[pair], q]
-            for axis in range(d):
-                total[node, axis] += impulse[pair, d * q + axis]
-
-
-class Surface:
-    """The facets of a run between its steps: places and velocities of the nodes, the list, impulses.
-
-    stiff, radius: see `Faces`.
-    """
-
-    def __init__(self, facets: Facets, dimension: int, stiff: Floats, radius: Floats) -> None:
-        self.d = max(2, dimension)
-        self.facets = facets
-        self.x = np.ascontiguousarray(facets.nodes.T)
-        self.v = np.zeros_like(self.x)
-        self.motion = np.zeros(2)
-        self.total = np.zeros((len(facets.nodes), 3))  # impulse that has been added up
-        self._stiff, self._radius = stiff, radius
-        none = np.zeros(0, np.int64)
-        self._list: tuple[Ints, ...] = none, none, none
-        self._pairs = np.zeros((0, self.d**2)), np.zeros((0, self.d**2))
-
-    def faces(self) -> Faces:
-        """What the loops see; views."""
-        friction = self.facets.friction or Coulomb(0.0, 0.0)
-        return Faces(
-            self.x, self.v, self.motion, self.facets.corners, self.facets.half, self.facets.closed,
-            friction.static, friction.kinetic, self._stiff, self._radius, *self._list, *self._pairs,  # type: ignore[call-arg]
-        )  # fmt: skip
-
-    def build(self, x: Floats, y: Floats, z: Floats | None, n: int, largest: float, spare: float) -> None:
-        """List the facets of each of the first n particles. largest: radius; spare: that they may go until the next."""
-        self.settle()
-        reach = np.where(self.facets.closed, 2.0, 1.0) * largest + self.facets.half + spare
-        self._list = candidates(x, y, z, n, self.x, self.facets.corners, reach)
-        pairs = len(self._list[2])
-        self._pairs = np.zeros((pairs, self.d**2)), np.zeros((pairs, self.d**2))
-        self.motion[1] = 0.0
-
-    def largest(self, h: Floats, body: Ints) -> float:
-        """The radius of the largest particle. h, body: of all."""
-        return float((self._radius[body] * h).max())
-
-    def settle(self) -> None:
-        """Add the impulses of the pairs to those of the nodes."""
-        _to_nodes(self.facets.corners, self._list[2], self._pairs[1], self.d, self.total)
-        self._pairs[1][:] = 0.0
-
-    # as `driving.Driven`
-
-    def read(self, name: str) -> Floats:
-        """(m, 3) of the nodes: x, u (velocity), impulse, thrust."""
-        if name == "thrust":
-            thrust = np.zeros_like(self.total)
-            _to_nodes(self.facets.corners, self._list[2], self._pairs[0], self.d, thrust)
-            return thrust
-        if name == "impulse":
-            self.settle()
-            return self.total.copy()
-        return np.ascontiguousarray({"x": self.x, "u": self.v}[name].T)
-
-    def write(self, name: str, values: Floats | float) -> None:
-        """Set velocities `u`, or `impulse`."""
-        if name == "impulse":
-            self.settle()
-            self.total[:] = values
-            return
-        self.v[:] = np.asarray(values).T
-        self.motion[0] = float(np.sqrt((self.v**2).sum(axis=0)).max(initial=0.0))
-
-    # to be continued
-
-    def state(self) -> dict[str, Any]:
-        """Arrays of a checkpoint."""
-        self.settle()
-        first, count, rows = self._list
-        kept = {"x": self.x, "v": self.v, "motion": self.motion, "total": self.total, "thrust": self._pairs[0]}
-        lists = {"first": first, "count": count, "rows": rows}
-        return {f"facets_{name}": values.copy() for name, values in {**kept, **lists}.items()}
-
-    def restore(self, data: dict[str, Any]) -> None:
-        """Go on from a checkpoint."""
-        for name, values in (("x", self.x), ("v", self.v), ("motion", self.motion), ("total", self.total)):
-            values[:] = data[f"facets_{name}"]
-        self._list = tuple(np.array(data[f"facets_{name}"]) for name in ("first", "count", "rows"))
-        thrust = np.array(data["facets_thrust"])
-        self._pairs = thrust, np.zeros_like(thrust)

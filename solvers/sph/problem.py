@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from ..contact.friction import Coulomb, Drag
 from ..contact.plane import Wall
 from ..materials import Law
-from .facing import Facets
 from .ghosts import PERIODIC, Plane
 from .rings import AXIS, TURN
 from .smoothing import shape_of
+from .surface import Facets
 
 Floats = NDArray[np.float64]
 

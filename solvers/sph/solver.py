@@ -22,7 +22,6 @@ from ..threads import available, run
 from . import across, births, blame, ghosts, local, measures, probes, reference, rest, setup, step
 from .contact import contact_of
 from .driving import Driven
-from .facing import Surface
 from .particle import DRIVEN
 from .problem import Cures, Problem
 from .smoothing import shape_of
@@ -43,7 +42,6 @@ class Solver:
         self.problem = problem
         self.end_time = problem.end_time
         self.builds = 0
-        self._given = 0.0  # work of what drives particles, up to where their impulse was taken
         n = self.n = len(problem.x)
         self.live = n  # particles that have not left the problem; the others stand behind them
         self.threads = 1 if n < SMALL else max(1, min(threads or available(), available()))
@@ -66,6 +64,8 @@ class Solver:
         has = self._has = setup.rows_of(problem, self._contact, cures, local=self._stiff is not None)
         self._rows_apart = True if has.correction or has.hoop else None
         self._state = State(n, problem.dimension, has)
+        surface = self._contact.surface
+        self.driven = Driven(self._state, n, surface) if has.driven or surface is not None else None
         self._mirrored = any(p.kind in (ghosts.SYMMETRY, ghosts.PERIODIC) for p in problem.planes)
         self._progress = np.zeros(step.PROGRESS)
         self._list = NeighbourList(n)
@@ -332,34 +332,6 @@ class Solver:
             velocity[k, driven] = s.rows("u")[k, :n][driven]
         return velocity
 
-    # what a structure does with the particles that it drives
-
-    @property
-    def driven(self) -> Driven | Surface:
-        """What a structure moves, particles or facets: their rows are read and set between two steps."""
-        return self._contact.surface or Driven(self._state, self.n)
-
-    def drive(self, velocity: Floats) -> None:
-        """From here on driven particles move at these velocities (m, 3)."""
-        self.take_impulse()
-        self.driven.write("u", velocity)
-
-    def take_impulse(self) -> Floats:
-        """(m, 3) impulse on the driven particles since it was last taken."""
-        driven = self.driven
-        impulse = driven.read("impulse")
-        self._given -= float(np.sum(impulse * driven.read("u")))
-        driven.write("impulse", 0.0)
-        return impulse
-
-    @property
-    def given_work(self) -> float:
-        """Work of what drives particles."""
-        if not self._has.driven and self._contact.surface is None:
-            return 0.0
-        driven = self.driven
-        return self._given - float(np.sum(driven.read("impulse") * driven.read("u")))
-
     def frame(self) -> Frame:
         """The state now, in the order of the deck."""
         arrays = measures.particles(self.problem, self._state, self._velocity()[:, : self.live], self.live)
@@ -367,9 +339,10 @@ class Solver:
 
     def energies(self) -> dict[str, float]:
         """Energies now, see `measures.energies`."""
-        found = measures.energies(self.problem, self._state, self._velocity(), self.live, self.given_work)
+        given = 0.0 if self.driven is None else self.driven.work
+        found = measures.energies(self.problem, self._state, self._velocity(), self.live, given)
         if self._contact.surface is not None:  # what facets give is no particle's work
-            found["contact_energy"] += self.given_work
+            found["contact_energy"] += given
         return found
 
     def history(self) -> dict[str, float]:
@@ -413,15 +386,11 @@ class Solver:
 
     def checkpoint(self) -> dict[str, Any]:
         """Everything that another process needs to go on bit for bit, including where the neighbour list was built."""
-        s, n = self._state, self.n
-        data: dict[str, Any] = {name: np.array(s.rows(name)[:, :n]) for name in s.slices}
-        data["live"] = self.live
-        data |= {"id": s.id[:n].copy(), "material": s.material[:n].copy(), "fixed": s.fixed[:n].copy()}
-        return data | {
+        return self._state.kept() | {
+            "live": self.live,
             "progress": self._progress.copy(),
             "inner": self._inner.copy(),
-            "given": self._given,
-            **({} if self._contact.surface is None else self._contact.surface.state()),
+            **({} if self.driven is None else self.driven.kept()),
             "start_energy": np.array(list(self._start_energy.values())),
             "time": self.time,
             "step": self.step,
@@ -429,23 +398,14 @@ class Solver:
 
     def restore(self, data: dict[str, Any]) -> None:
         """Go on from a checkpoint of the same problem. ValueError when it is of another one."""
-        s, n = self._state, self.n
-        wanted = [name for name in s.slices if name in data or len(s.rows(name))]
-        for name in wanted:
-            if name not in data or np.shape(data[name]) != s.rows(name)[:, :n].shape:
-                raise ValueError(f"the checkpoint does not fit this run: {name} is missing or has another shape")
-        for name in wanted:
-            s.rows(name)[:, :n] = data[name]
-        for name in ("id", "material", "fixed"):
-            getattr(s, name)[:n] = data[name]
+        self._state.restore(data)
         self.live = int(data["live"])
-        self._due = births.due(s, self.live)
+        self._due = births.due(self._state, self.live)
         self._progress[:] = data["progress"]
         self._inner[:] = data["inner"]
-        self._given = float(data["given"])
         if self.problem.body_curve is not None:
             step.body_force_at(self._progress[step.TIME], self._numbers)
         self._start_energy = dict(zip(self._start_energy, np.asarray(data["start_energy"]).tolist(), strict=True))
         self._rebuild(sort=False)
-        if self._contact.surface is not None:
-            self._contact.surface.restore(data)
+        if self.driven is not None:
+            self.driven.restore(data)

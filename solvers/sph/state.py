@@ -203,6 +203,9 @@ class Rows:
     interface: bool = False
 
 
+_WHOLE = ("id", "material", "fixed")  # what is counted in whole numbers, beside the rows
+
+
 class State:
     """Storage of the rows above in one array of (rows, n + room + 1), so that sorting moves everything at once.
 
@@ -283,6 +286,24 @@ class State:
         run(_permute, threads, self.numbers, np.empty((threads, n)), self.lasting, order)
         for whole in (self.id, self.material, self.fixed):
             whole[:n] = whole[:n][order]
+
+    def kept(self) -> dict[str, Any]:
+        """All rows and numbers of the particles, for a checkpoint."""
+        n = self.n
+        whole = {name: getattr(self, name)[:n].copy() for name in _WHOLE}
+        return {name: np.array(self.rows(name)[:, :n]) for name in self.slices} | whole
+
+    def restore(self, data: dict[str, Any]) -> None:
+        """Take them back. ValueError when they are of another run."""
+        n = self.n
+        wanted = [name for name in self.slices if name in data or len(self.rows(name))]
+        for name in wanted:
+            if name not in data or np.shape(data[name]) != self.rows(name)[:, :n].shape:
+                raise ValueError(f"the checkpoint does not fit this run: {name} is missing or has another shape")
+        for name in wanted:
+            self.rows(name)[:, :n] = data[name]
+        for name in _WHOLE:
+            getattr(self, name)[:n] = data[name]
 
     def place_dummy(self, far: float) -> None:
         """Put the dummy out of everybody's reach; its mass and volume are zero."""

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..contact.friction import DASHPOT, ELASTIC, FORGET, STICK, WEAKENING, follow, stick_or_slide
+from ..contact.friction import FORGET, follow, rub
 from ..contact.plane import wall_push
 from ..jit import kernel
 from .across import stable_step
@@ -77,12 +77,10 @@ def wall_force(i0, i1, z, walls, law, damping, slip, heat, dt, cx, arrays):
                 row = m * (d + 2)
                 load = follow(slip[row + d + 1, i], force, dt, wave, arrays.h[i])
                 slip[row + d + 1, i] = load
-                tx, ty, tz, ex, ey, ez, slid, lost = stick_or_slide(
+                tx, ty, tz, ex, ey, ez, slid, lost = rub(
                     slip[row, i], slip[row + 1, i], slip[row + 2, i] if z is not None else 0.0,
-                    sx - along * nx, sy - along * ny, sz - along * nz, dt,
-                    min(max(load, 1e-6 * force) / (ELASTIC * arrays.h[i]), STICK * k), DASHPOT * math.sqrt(k * mass),
-                    walls.static[m] * load, walls.kinetic[m] * load,
-                    WEAKENING * arrays.h[i], slip[row + d, i],
+                    sx - along * nx, sy - along * ny, sz - along * nz, dt, load, force, k, mass, arrays.h[i],
+                    walls.static[m], walls.kinetic[m], slip[row + d, i],
                 )  # fmt: skip
                 slip[row, i] = ex
                 slip[row + 1, i] = ey

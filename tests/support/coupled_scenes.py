@@ -13,8 +13,8 @@ from zrno.solvers import fem, sph
 from zrno.solvers.contact.friction import Coulomb
 from zrno.solvers.coupling import Coupled, Exchange
 from zrno.solvers.materials import Elastic
-from zrno.solvers.sph.facing import Facets
 from zrno.solvers.sph.problem import Body
+from zrno.solvers.sph.surface import Facets
 
 SOFT = Elastic.from_engineering(50.0, 0.3)
 HARD = Elastic.from_engineering(5.0e3, 0.3)

@@ -13,8 +13,8 @@ from zrno.solvers import fem, sph
 from zrno.solvers.contact.friction import Coulomb
 from zrno.solvers.coupling import Coupled, Exchange
 from zrno.solvers.materials import Elastic
-from zrno.solvers.sph.facing import Facets
 from zrno.solvers.sph.problem import Body
+from zrno.solvers.sph.surface import Facets
 
 SPACING, DENSITY, GRAVITY = 2.0, 2.0e-3, 0.00981  # mm, g/mm^3, mm/ms^2
 COLUMNS, ROWS, THICKNESS = 6, 4, 0.5
