@@ -31,13 +31,21 @@ class NotConverged(ArithmeticError):
         self.worst = worst
 
 
+@dataclass(frozen=True, slots=True)
+class Scale:
+    """What a step like this has had: the largest force on the way; the energy of the first iteration without a guess."""
+
+    force: float = 0.0
+    energy: float = 0.0
+
+
 @dataclass(slots=True)
 class Trace:
     """How a step's iterations went: residual forces over the loads, by iteration."""
 
     residuals: list[float] = field(default_factory=list)
     factorisations: int = 0
-    largest: float = 0.0  # force on the way
+    scale: Scale = Scale()
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,34 +66,35 @@ class Target:
 
 def equilibrium(
     assembly: Assembly, start: Shape, target: Target, dt: float, how: Iteration, *, definite: bool = True,
-    keep: bool = False, guess: Floats | None = None, floor: float = 0.0,
+    keep: bool = False, guess: Floats | None = None, scale: Scale = Scale(),
 ) -> tuple[Shape, Floats, Trace]:  # fmt: skip
     """The shape in equilibrium, the internal forces (n, 6) and how the iterations went. Raises NotConverged.
 
     keep: the factors that there are hold, of a linear structure and an equal step; guess: (n, 6) a change to begin
-    with, prescribed motion included, in place of the answer to the stiffness at the start; floor: the largest force on
-    the way of a step like this.
+    with, prescribed motion included, in place of the answer to the stiffness at the start; scale: of a step like this.
+    After a guess the energy asked for is a share of what `scale` tells.
     """
     trace = Trace()
+    turns = start.turn is not None  # old factors of a thin shell that turns stretch it: they lead away
     shape = start if guess is None else start.moved(guess)
     moved = target.change if guess is None and target.change.any() else None
-    stale = not keep  # whether the factors are to be made anew
+    stale = not keep if guess is None else turns or not assembly.system.factored  # the factors are to be made anew
     loads = target.external(shape)
-    stiff = guess is None and (stale or moved is not None)
+    stiff = stale or moved is not None  # the matrix is that of the shape
     internal, of_motion = _evaluate(assembly, shape, start, dt, stiff=stiff, moved=moved)
     residual = _residual(assembly, target, shape, loads, internal, of_motion)
-    largest = max(floor, _size(loads), _size(of_motion), _size(internal))
+    largest = max(scale.force, _size(loads), _size(of_motion), _size(internal))
     if guess is not None:
-        stale = not assembly.system.factored or _share(residual, loads, internal, largest) > FAST
+        stale = stale or _share(residual, loads, internal, largest) > FAST
     first_energy, before = 0.0, math.inf
-    turns = start.turn is not None  # old factors of a thin shell that turns stretch it: they lead away
     for iteration in range(how.most if guess is None else min(how.most, GUESSED)):
         if stale:
-            if iteration or guess is not None:
+            if not stiff:
                 internal, _ = _evaluate(assembly, shape, start, dt, stiff=True, moved=None)
                 residual = _residual(assembly, target, shape, loads, internal, None)
             definite = _factor(assembly, target, definite=definite)
             trace.factorisations += 1
+        stiff = False
         step = assembly.expand(assembly.solve(residual))
         if iteration == 0 and moved is not None:
             step = step + target.change
@@ -98,10 +107,11 @@ def equilibrium(
             trial, loads, internal, left = _searched(
                 assembly, target, shape, start, step, dt, left, along, (trial, loads, internal)
             )
-        largest = trace.largest = max(largest, _size(loads), _size(internal))
+        largest = max(largest, _size(loads), _size(internal))
         energy = abs(float(residual @ assembly.gather(step)))
         if iteration == 0:
-            first_energy = max(energy, _energy(loads, step))
+            first_energy = max(energy, _energy(loads, step), scale.energy if guess is not None else 0.0)
+        trace.scale = Scale(largest, first_energy)
         shape, residual = trial, left
         size = _share(residual, loads, internal, largest)
         trace.residuals.append(size)
@@ -111,7 +121,9 @@ def equilibrium(
         if round_off or _converged(how, size, energy, first_energy, step, shape, start):
             return shape, internal, trace
         slow = size > FAST * before
-        stale = not keep and (how.method == "newton" or (how.method == "adaptive" and (slow or turns)))
+        always = how.method == "newton" or (how.method == "adaptive" and turns)
+        near = guess is not None and size <= FAST**2  # the matrix is that of the guess, which was good
+        stale = not keep and ((always and not near) or (how.method != "modified" and slow))
         before = size
     worst = divmod(int(assembly.where[int(np.argmax(np.abs(residual)))]), 6) if assembly.transform is None else None
     count, last = len(trace.residuals), trace.residuals[-1]

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from .assembly import Mechanism
 from .eigen import vibrations
-from .equilibrium import NotConverged, Target, equilibrium
+from .equilibrium import NotConverged, Scale, Target, equilibrium
 from .explicit import Stepper
 from .groups.group import Bad
 from .implicit import Integrator
@@ -164,7 +164,8 @@ class Increments(Still):
         self.mover: Integrator | None = None
         self._kept = 0.0  # the step whose factors are there, of a linear structure
         self._before: tuple[Floats, Floats, float] | None = None  # the last change, what of it was prescribed, its step
-        self._largest = 0.0  # force on the way of the last step
+        self._growth: Floats | None = None  # how much that change was larger than the one before it
+        self._scale = Scale()  # of the last step
         self._wary = 0  # steps to come that are not guessed, since a guess went wrong
         p = solver.problem
         self.name = f"{'linear' if solver.linear else f'nonlinear ({p.iteration.method})'} static"
@@ -209,7 +210,7 @@ class Increments(Still):
         how = solver.problem.iteration
         try:
             shape, internal, trace = equilibrium(
-                solver.assembly, solver.shape, target, dt, how, keep=keep, guess=guess, floor=self._largest
+                solver.assembly, solver.shape, target, dt, how, keep=keep, guess=guess, scale=self._scale
             )
         except NotConverged:
             self._before = None
@@ -217,11 +218,13 @@ class Increments(Still):
                 raise
             self._wary = WARY
             shape, internal, trace = equilibrium(
-                solver.assembly, solver.shape, target, dt, how, keep=keep, floor=self._largest
+                solver.assembly, solver.shape, target, dt, how, keep=keep, scale=self._scale
             )
-        self._largest = trace.largest
+        self._scale = trace.scale
         self._kept = dt if solver.linear else 0.0
-        self._before = (shape.u - solver.shape.u, change, dt)
+        last = shape.u - solver.shape.u
+        self._growth = None if guess is None or self._before is None else last - dt / self._before[2] * self._before[0]
+        self._before = (last, change, dt)
         solver.iterations += len(trace.residuals)
         log.debug("t = %g: residuals %s", until, " ".join(f"{r:.1e}" for r in trace.residuals))
         if mover is None:
@@ -247,7 +250,10 @@ class Increments(Still):
             raise Mechanism(node, dof, "a load acts where no element is there yet or any more")
 
     def _guess(self, change: Floats, dt: float) -> Floats | None:
-        """The last step's change once more, where the motion that is prescribed goes on as it went; None elsewhere."""
+        """The last step's change once more, and grown as it grew, where prescribed motion goes on as it went.
+
+        Without the growth a plate that turns would be stretched by the square of the step's angle. None elsewhere.
+        """
         if self._before is None or self.mover is not None:
             return None
         if self._wary:
@@ -257,7 +263,7 @@ class Increments(Still):
         share = dt / before
         if not np.allclose(change, share * prescribed, rtol=1e-9, atol=1e-12 * float(np.abs(change).max(initial=0.0))):
             return None
-        return share * last
+        return share * last if self._growth is None else share * last + share * share * self._growth
 
     def velocity(self, solver: Solver) -> Floats | None:
         return None if self.mover is None else self.mover.velocity
@@ -277,10 +283,10 @@ class Increments(Still):
     def state(self) -> dict[str, Floats]:
         m = self.mover
         moving = {} if m is None else {"velocity": m.velocity, "acceleration": m.acceleration, "last": m.last}
-        return {"largest": np.array(self._largest), **moving}
+        return {"scale": np.array([self._scale.force, self._scale.energy]), **moving}
 
     def restore(self, data: dict[str, Floats]) -> None:
-        self._largest = float(data["largest"])
+        self._scale = Scale(*np.asarray(data["scale"]).tolist())
         if self.mover is not None:
             for name in ("velocity", "acceleration", "last"):
                 setattr(self.mover, name, np.array(data[name]))

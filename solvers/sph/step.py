@@ -189,6 +189,8 @@ def advance(
                             a, b, offset, image_source, shape, solid, h, line, correction, density_rate, stress_rate,
                             plain, hoop, reference, last, arrays, numbers,
                         )  # fmt: skip
+                        if walled is not None and driven is not None:
+                            bearing.without_walls(a, b, solid, shape, correction, arrays, numbers)
                         if resting is not None:
                             rest.no_diffusion(a, b, density_rate, stress_rate, arrays)
                         a, b = rest.run_of(b, end, resting, rest.HELD, arrays.still)

@@ -11,7 +11,7 @@ import pytest
 from sph_scenes import ELASTIC, finished, impact, jittered, lattice, one_body, periodic
 
 from zrno.solvers.materials import Elastic
-from zrno.solvers.sph import Cures, Plane, Problem, Solver, pairs, particle
+from zrno.solvers.sph import Cures, Plane, Problem, Solver, bearing, pairs, particle
 from zrno.solvers.sph.ghosts import SYMMETRY
 from zrno.solvers.sph.step import INSTANT
 
@@ -245,6 +245,46 @@ def test_a_wall_bears_the_stress_of_what_lies_on_it(dimension: int, correction: 
     near = wall & (x[:, 1] > x[:, 1].min() + 0.05)  # the lowest of the three rows sees nothing but wall
     assert np.abs(found["stress"][near] - stress[near]).max() < 1e-9
     assert found["density"][wall].tolist() == [1.0] * int(wall.sum())
+
+
+@pytest.mark.parametrize("correction", [False, True])
+@pytest.mark.parametrize("shape", [(8, 8), (5, 5, 5)])
+def test_a_wall_that_moves_is_strained_by_what_leans_on_it_alone(shape: tuple[int, ...], correction: bool) -> None:
+    """Wall on wall exerts nothing: its work would be energy out of nothing."""
+    d = len(shape)
+    x = jittered(shape)
+    wall = x[:, 1] < np.median(x[:, 1])
+    v = np.random.default_rng(2).normal(size=x.shape) * (np.arange(3) < d)
+    base = one_body(x, v, dimension=d, cures=Cures(correction=correction))
+    bodies = (base.bodies[0], dataclasses.replace(base.bodies[0], number=2, bearing=True))
+    solver = Solver(dataclasses.replace(base, bodies=bodies, body=wall.astype(np.int64)), threads=1)
+    a, n, solid = solver._arrays(), solver.n, True if d == 3 else None
+    a.x_half[:n], a.y_half[:n] = a.x[:n], a.y[:n]
+    if solid:
+        a.z_half[:n] = a.z[:n]
+    walls = a.material[:n] == 1
+
+    def gradient(volume: np.ndarray, correction: np.ndarray | None) -> np.ndarray:
+        pairs.velocity_gradient(
+            0, n, a.first, a.count, a.rows, solver._shape, a.x, a.y, solid, a.z, a.u, a.v, a.w, volume, None,
+            solver._numbers.inverse_h2, solver._numbers.scale, None, a.gradient, correction,
+        )  # fmt: skip
+        return np.array(a.gradient[:, :n].T.reshape(n, d, d))
+
+    grain = a.volume.copy()
+    grain[:n][walls] = 0.0
+    wanted = gradient(grain, None)
+    if correction:
+        whole = gradient(a.volume, a.correction)
+        b = np.array([[0, 2], [2, 1]] if d == 2 else [[0, 3, 5], [3, 1, 4], [5, 4, 2]])
+        wanted = np.einsum("iab,ibc->iac", wanted, a.correction[b][:, :, :n].transpose(2, 0, 1))
+    else:
+        whole = gradient(a.volume, None)
+    bearing.without_walls(0, n, solid, solver._shape, a.correction if correction else None, a, solver._numbers)
+    found = np.array(a.gradient[:, :n].T.reshape(n, d, d))
+    assert np.array_equal(found[~walls], whole[~walls])
+    assert np.abs(whole - wanted)[walls].max() > 0.1
+    assert np.abs(found - wanted)[walls].max() < 1e-12 * np.abs(whole).max()
 
 
 def test_smoothed_velocities_move_particles_and_conserve_momentum() -> None:
