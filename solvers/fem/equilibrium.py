@@ -33,7 +33,7 @@ class NotConverged(ArithmeticError):
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """What a step like this has had: the largest force on the way; the energy of the first iteration without a guess."""
+    """Of a step like this: the largest force on the way; the energy of its first iteration without a guess."""
 
     force: float = 0.0
     energy: float = 0.0
