@@ -92,6 +92,7 @@ def numbers_of(p: Problem, contact: Contact, shape: Shape, *, mirrors: bool) -> 
     spacing = float(np.median(p.sections ** (1.0 / p.dimension) / p.h))
     wave = np.array([sound_speed(b.law, b.density, _first_energy(p, k)) for k, b in enumerate(p.bodies)])
     scale = normal / h ** (p.dimension + 2) if uniform_h(p) else normal
+    beside = value_at(shape, spacing)
     return Numbers(
         dimension=p.dimension,
         inverse_h2=1.0 / (h * h),
@@ -112,7 +113,7 @@ def numbers_of(p: Problem, contact: Contact, shape: Shape, *, mirrors: bool) -> 
         least_distance=IMAGE if mirrors else 0.0,
         wall=np.array([b.density if b.bearing else 0.0 for b in p.bodies]),
         kinematic_viscosity=np.array([getattr(b.law, "viscosity", 0.0) / b.density for b in p.bodies]),
-        inverse_w=1.0 / value_at(shape, spacing),
+        inverse_w=1.0 / beside if beside > 0.0 else 0.0,  # too far apart to see each other
         step_option=p.step_option,
         step_factor=p.step_factor,
         original=p.original,

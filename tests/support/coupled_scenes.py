@@ -74,6 +74,23 @@ def facing(structure: fem.Problem, *, friction: Coulomb | None = None, **changes
     )  # fmt: skip
 
 
+def layer(structure: fem.Problem, ratio: float, *, stiffness: float, gravity: float) -> sph.Problem:
+    """One grain over each element, that touches the plate and no other: `ratio` of the plate's mass.
+
+    stiffness: of a grain's contact [N/mm].
+    """
+    whole = facing(structure, gap=0.5 * THICKNESS, side=ELEMENTS)
+    x = whole.x[whole.x[:, 2] < whole.x[:, 2].min() + 0.5 * SPACING]
+    n, density = len(x), DENSITY * ratio * THICKNESS / SPACING
+    law = Elastic.from_engineering(stiffness / (0.5 * SPACING) * (1.0 + 0.3) * (1.0 - 0.6) / (1.0 - 0.3), 0.3)
+    body = dataclasses.replace(whole.bodies[0], law=law, density=density)
+    return dataclasses.replace(
+        whole, x=x, v=np.zeros((n, 3)), mass=np.full(n, density * SPACING**3), h=np.full(n, 0.4 * SPACING),
+        density=np.full(n, density), body=np.zeros(n, np.int64), bodies=(body,), body_force=(0.0, 0.0, -gravity),
+        contact_damping=0.3,
+    )  # fmt: skip
+
+
 def drop(structure: fem.Problem, particles: sph.Problem, *, threads: int = 1, **exchange: Any) -> Coupled:
     """Both, coupled at all nodes of the structure."""
     given = {"nodes": np.arange(len(structure.x))} | exchange

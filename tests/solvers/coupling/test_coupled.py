@@ -7,7 +7,8 @@ import math
 
 import numpy as np
 import pytest
-from coupled_scenes import DENSITY, HARD, SIDE, SPACING, THICKNESS, block, drop, facing, momentum, plate
+from coupled_scenes import DENSITY, HARD, SIDE, SPACING, THICKNESS, block, drop, facing, layer, momentum, plate
+from scipy.optimize import curve_fit
 
 from zrno.solvers import fem
 from zrno.solvers.contact.friction import Coulomb
@@ -247,3 +248,47 @@ def test_a_plate_lifted_at_10_metres_a_second_keeps_its_block():
     assert np.abs(force - wanted).max() < 0.04 * wanted.max()  # what rings is the block
     assert force[now > 15.0].mean() == pytest.approx(mass * GRAVITY, rel=0.05)
     assert coupled.frame().particles["velocity"][:, 2] == pytest.approx(10.0, rel=2e-3)
+
+
+def loaded(ratio, *, periods, **exchange):
+    """A plate under a layer of grain of `ratio` times its mass, let go: (coupled, period of the plate that carries it,
+    times, deflections of its middle)."""
+    heavy = plate(dynamics=None, modes=1, steps=((1, 1.0),))
+    elements = (dataclasses.replace(heavy.elements[0], density=DENSITY * (1.0 + ratio)),)
+    modes = fem.Solver(dataclasses.replace(heavy, elements=elements))
+    modes.advance(math.inf, 1)
+    period = 1.0 / modes.procedure.frequency
+    mass = DENSITY * ratio * THICKNESS * SPACING**2
+    structure = plate(period=period / 60, steps=60 * periods)
+    grain = layer(structure, ratio, stiffness=mass * (10.0 * 2.0 * math.pi / period) ** 2, gravity=50.0)
+    coupled = drop(structure, grain, **exchange)
+    middle = int(np.argmin(np.abs(structure.x[:, :2] - 0.5 * SIDE).sum(axis=1)))
+    times, found = [0.0], [0.0]
+    for _ in range(60 * periods):
+        coupled.advance(math.inf, 1)
+        times.append(coupled.time)
+        found.append(coupled.structure.shape.u[middle, 2])
+    return coupled, period, np.array(times), np.array(found)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("ratio", [0.1, 0.3, 1.0, 3.0, 10.0])
+def test_a_plate_that_carries_grain_has_the_period_of_its_added_mass(ratio):
+    """Strong coupling at ratios of mass of 0.1 to 10: the grain rides on the plate."""
+    _, period, t, u = loaded(ratio, periods=3, tolerance=1e-3)
+
+    def wave(t, mean, size, omega, phase):
+        return mean + size * np.cos(omega * t + phase)
+
+    fit, _ = curve_fit(wave, t, u, p0=[u.mean(), -u.mean(), 2.0 * math.pi / period, 0.1])
+    assert 2.0 * math.pi / abs(fit[2]) == pytest.approx(period, rel=0.02)
+    assert -2.5 < u.min() / abs(u.mean()) < -1.5  # from rest to twice the static sag
+
+
+@pytest.mark.slow
+def test_weak_coupling_fails_under_grain_heavier_than_the_plate():
+    """Its limit: what is documented, and why strong coupling is there."""
+    light, heavy = (np.abs(loaded(ratio, periods=3)[3]).max() for ratio in (0.1, 10.0))
+    steady = [np.abs(loaded(ratio, periods=3, tolerance=1e-3)[3]).max() for ratio in (0.1, 10.0)]
+    assert light < 1.3 * steady[0]
+    assert heavy > 50.0 * steady[1]
