@@ -31,3 +31,6 @@ Mesh.MeshSizeMin = size;  Mesh.MeshSizeMax = size;
 Recombine Surface {1:6};
 Physical Surface("body") = {1, 2, 3, 4, 5};
 Physical Surface("door") = {6};
+Physical Curve("frame") = {1, 2, 3, 4, 5, 6, 7};  // beams run along the door, the foot of the walls, the ledge and the rim
+Physical Curve("middle_x") = {8, 11, 13};  // on x = 0
+Physical Curve("middle_y") = {10, 15};     // on y = 0

@@ -10,6 +10,7 @@ import math
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from .assembly import Mechanism
@@ -95,6 +96,7 @@ class Superposition(Still):
 
     def __init__(self) -> None:
         self._patterns: list[tuple[int | None, float, Floats, Floats]] | None = None
+        self._stiffness: sp.csr_matrix | None = None  # of all degrees of freedom, held ones too
 
     def take(self, solver: Solver, end: float) -> None:
         if self._patterns is None:
@@ -105,17 +107,24 @@ class Superposition(Still):
             u += factor * answer
             external += factor * forces
         contact = solver.loads.contact
-        if contact is not None:
-            a = solver.assembly
-            if not a.system.factored:
-                zero = Shape(np.zeros((solver.n, 6)))
-                a.evaluate(zero, zero, 0.0)
-                a.factor()
-            u += a.expand(a.solve(a.gather(contact)))
-            external += contact
-        shape = Shape(u)
-        internal, _ = solver.assembly.evaluate(shape, solver.shape, 0.0, stiff=False)
-        solver.accept(shape, external, internal)
+        if contact is None:
+            shape = Shape(u)
+            internal, _ = solver.assembly.evaluate(shape, solver.shape, 0.0, stiff=False)
+            solver.accept(shape, external, internal)
+            return
+        a = solver.assembly
+        zero = Shape(np.zeros((solver.n, 6)))
+        if not a.system.factored:
+            a.evaluate(zero, zero, 0.0)
+            a.factor()
+        if self._stiffness is None:  # a step under new forces then costs a product, no look at each element
+            self._stiffness = a.full_matrix("stiffness", zero)
+        u += a.expand(a.solve(a.gather(contact)))
+        internal = (self._stiffness @ u.ravel()).reshape(u.shape)
+        solver.accept(Shape(u), external + contact, internal, seen=False)
+
+    def forget(self) -> None:
+        self._patterns, self._stiffness = None, None
 
     def _answers(self, solver: Solver) -> list[tuple[int | None, float, Floats, Floats]]:
         a, zero = solver.assembly, Shape(np.zeros((solver.n, 6)))

@@ -53,6 +53,7 @@ class Solver:
         self._damping = np.zeros((n, 6))
         self._ends = np.arange(problem.modes + 1.0) if problem.modes else problem.ends()
         self.dt = float(self._ends[1])
+        self._seen: Shape | None = None  # the shape of the elements' stresses, where that is not the last one
         self._start()
         self.procedure = self._procedure()
         if self.procedure.velocity(self) is None:
@@ -139,11 +140,12 @@ class Solver:
 
     def accept(
         self, shape: Shape, external: Floats, internal: Floats, inertia: Floats | None = None,
-        damping: Floats | None = None, duration: float = 0.0,
+        damping: Floats | None = None, duration: float = 0.0, *, seen: bool = True,
     ) -> None:  # fmt: skip
         """Commit a shape with its forces (n, 6); work of loads, supports and damping by the trapezoidal rule.
 
-        duration: of what led to it, of a structure with inertia: the impulse of its supports.
+        duration: of what led to it, of a structure with inertia: the impulse of its supports. seen: whether the
+        elements were evaluated at the shape; of a linear structure they may be later, when stresses are asked for.
         """
         moved = shape.u - self.shape.u
         inner = internal if inertia is None else internal + inertia
@@ -155,7 +157,10 @@ class Solver:
         forces, before = external + reaction, self.external_forces + self.reaction
         self.external_work += 0.5 * float(((forces + before) * moved).sum())
         self.support_impulse = self.support_impulse + 0.5 * duration * (reaction + self.reaction)[:, :3].sum(axis=0)
-        self.assembly.commit()
+        if seen:
+            self.assembly.commit()
+        elif self._seen is None:
+            self._seen = self.shape
         self.shape, self.reaction = shape, reaction
         self.internal_forces, self.external_forces = internal, external
 
@@ -202,10 +207,21 @@ class Solver:
 
     def frame(self) -> Frame:
         """The state now, nodes and elements in the order of the deck."""
+        self._see()
         return output.frame(self)
+
+    def _see(self) -> None:
+        """Bring the elements' stresses to the shape."""
+        if self._seen is not None:
+            self.assembly.evaluate(self.shape, self._seen, 0.0, stiff=False)
+            self.assembly.commit()
+            self._seen = None
 
     def energies(self) -> dict[str, float]:
         """Kinetic, internal (what flow and damping took included), dissipated, and the work of loads and supports."""
+        if self._seen is not None:  # linear statics
+            internal = 0.5 * float((self.internal_forces * self.shape.u).sum())
+            return {"kinetic": 0.0, "internal": internal, "dissipated": 0.0, "external_work": self.external_work}
         pairs = [g.energies() for g in self.assembly.groups]
         stops = self.assembly.stops
         held = 0.0 if stops is None else stops.energy(self.shape.u)
@@ -228,6 +244,7 @@ class Solver:
 
     def checkpoint(self) -> dict[str, Any]:
         """Everything that another process needs to go on; this one goes on as if it were the other."""
+        self._see()
         self.procedure.forget()
         self.assembly.system.factored = False
         for group in self.assembly.groups:
@@ -243,6 +260,8 @@ class Solver:
                  "start_energy": self.start_energy, "iterations": self.iterations}  # fmt: skip
         if self.loads.contact is not None:
             data["contact"] = self.loads.contact
+        if self._seen is not None:
+            data["seen"] = self._seen.u
         if self.shape.turn is not None:
             data["turn"] = self.shape.turn
         data |= {f"procedure_{name}": values for name, values in self.procedure.state().items()}
@@ -257,6 +276,7 @@ class Solver:
         self.shape = Shape(np.array(data["u"]), np.array(data["turn"]) if "turn" in data else None)
         for name in _KEPT:
             setattr(self, name, np.array(data[name]))
+        self._seen = Shape(np.array(data["seen"])) if "seen" in data else None
         self._damping = np.array(data["damping"])
         self.support_impulse = np.array(data["support_impulse"])
         self.loads.contact = np.array(data["contact"]) if "contact" in data else None

@@ -70,13 +70,15 @@ def test_a_free_plate_takes_all_of_the_momentum(contact):
     assert np.abs(momentum(coupled) - start).max() < 1e-11 * abs(start[2])
 
 
-def test_a_checkpoint_changes_nothing():
+@pytest.mark.parametrize("inertia", [True, False])
+def test_a_checkpoint_changes_nothing(inertia):
     grain = facing(plate(), gap=1.55, speed=SPEED)
-    other = drop(plate(steps=STEPS), grain, tolerance=1e-3)
+    changes = {} if inertia else {"dynamics": None}
+    other = drop(plate(steps=STEPS, **changes), grain, tolerance=1e-3)
     run(other, 30)
     kept = {k: v.copy() if isinstance(v, np.ndarray) else v for k, v in other.checkpoint().items()}
     run(other, 10)
-    again = drop(plate(steps=STEPS), grain, tolerance=1e-3)
+    again = drop(plate(steps=STEPS, **changes), grain, tolerance=1e-3)
     again.restore(kept)
     run(again, 10)
     one, two = other.frame(), again.frame()
@@ -115,6 +117,29 @@ def test_the_force_at_rest_is_the_weight():
     nodes = coupled.frame().nodes
     assert nodes["contact_force"][:, 2].sum() == pytest.approx(-weight, rel=0.005)
     assert np.allclose(nodes["contact_pressure"], np.linalg.norm(nodes["contact_force"], axis=1) / 4.0, rtol=1e-14)
+
+
+def test_a_linear_structure_without_inertia_is_seen_when_it_is_asked_for():
+    """Its elements are evaluated for frames and checkpoints alone, and show what they did when seen every period."""
+    rows, stresses = [], []
+    for seen in (1, 7):
+        structure = plate(dynamics=None, steps=STEPS)
+        coupled = drop(structure, facing(plate(), gap=0.5, speed=SPEED), relaxation=0.2)
+        for k in range(21):
+            coupled.advance(math.inf, 1)
+            if (k + 1) % seen == 0:
+                frame = coupled.structure.frame()
+        rows.append(coupled.structure.energies())
+        stresses.append(frame.nodes["stress"])
+        coupled.advance(math.inf, 1)
+        before = coupled.structure.energies()
+        coupled.structure.frame()
+        after = coupled.structure.energies()
+        assert before["internal"] > 1e-6
+        assert after["internal"] == pytest.approx(before["internal"], rel=1e-9)  # by forces and by stresses
+    assert np.abs(stresses[1] - stresses[0]).max() < 1e-9 * np.abs(stresses[0]).max()
+    assert rows[1]["internal"] == pytest.approx(rows[0]["internal"], rel=1e-9)
+    assert rows[1]["external_work"] == pytest.approx(rows[0]["external_work"], rel=1e-9)
 
 
 def test_a_rigid_structure_turns_as_its_nodes_are_moved():
