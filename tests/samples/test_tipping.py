@@ -8,46 +8,60 @@ import numpy as np
 import pytest
 
 from zrno.pipelines import load, run
+from zrno.pipelines.load import Result
 from zrno.pipelines.samples import copy
 
 WEIGHT = 0.00981  # N by g
 
 
-def tipped(folder: Path, until: float, **options: object):
+def tipped(folder: Path, scene: str, until: float, **options: object) -> Result:
     copy("tipping", folder)
-    run([folder / "scene.yaml"], output=folder / "out", until=until, options={"render": [], **options})
+    run([folder / scene], output=folder / "out", until=until, options={"render": [], **options})
     return load(folder / "out")
 
 
 def test_the_plate_bears_the_cone(tmp_path: Path) -> None:
-    """In the first 60 ms the cone lands, and lies: the mean force on the plate is its weight."""
-    found = tipped(tmp_path / "tipping", 60.0)
+    """The cone lands, and lies after 60 ms: the mean force on the plate is its weight."""
+    found = tipped(tmp_path / "tipping", "scene.yaml", 100.0)
     h = found.history
-    lying = h["time"] > 40.0
+    lying = h["time"] > 60.0
     mass = found.arrays("particles", 0)["mass"].sum()
     assert -h["structure_force_z"][lying].mean() == pytest.approx(WEIGHT * mass, rel=0.01)
-    assert np.abs(h["interface_energy"][-1]) < 0.5 * h["external_work"][-1]
     plate = found.arrays("elements", len(found.times) - 1)
-    assert plate["displacement"][:, 2].max() == pytest.approx(6.0, rel=1e-3)  # the edge: 50 mm in 500 ms
+    assert plate["displacement"][:, 2].max() == pytest.approx(10.0, rel=1e-3)  # the edge: 50 mm in 500 ms
+
+
+def along(found: Result, time: float) -> np.ndarray:
+    """How far each particle has gone down the plate, which turns about the hinge's edge by asin(z/150)."""
+    start = found.arrays("particles", 0)["position"]
+    moved = found.arrays("particles", int(np.searchsorted(found.times, time - 1e-6)))["position"]
+    x = moved + np.array([75.0, 0.0, 0.0])
+    angle = np.arcsin(min(time, 500.0) / 500.0 * 50.0 / 150.0)
+    way: np.ndarray = start[:, 0] + 75.0 - (x[:, 0] * np.cos(angle) + x[:, 2] * np.sin(angle))
+    return way
+
+
+def lowest(found: Result) -> np.ndarray:
+    height = found.arrays("particles", 0)["position"][:, 2]
+    low: np.ndarray = height < height.min() + 2.0
+    return low
 
 
 @pytest.mark.slow
-def test_the_cone_sheds_and_slides(tmp_path: Path) -> None:
-    """[T] 8.3: grain runs down the flank from about 200 ms, the cone slides from about 450 ms."""
-    found = tipped(tmp_path / "tipping", 1000.0)
-    plate = {t: k for k, t in enumerate(found.times)}
-    start = found.arrays("particles", 0)["position"]
+def test_the_cone_slides_as_a_whole_when_friction_says(tmp_path: Path) -> None:
+    """[T] 8.3: from about 450 ms, where the plate stands at the angle of friction."""
+    found = tipped(tmp_path / "tipping", "scene.yaml", 700.0)
+    low = lowest(found)
+    assert abs(np.median(along(found, 400.0)[low])) < 0.05
+    assert 0.3 < np.median(along(found, 500.0)[low]) < 2.0
+    assert np.median(along(found, 600.0)[low]) > 5.0
 
-    def along(time: float) -> np.ndarray:
-        """How far each particle has gone down the plate: across the hinge's edge the plate turns by asin(z/150)."""
-        x = found.arrays("particles", plate[time])["position"] + np.array([75.0, 0.0, 0.0])
-        angle = np.arcsin(min(time, 500.0) / 500.0 * 50.0 / 150.0)
-        now = x[:, 0] * np.cos(angle) + x[:, 2] * np.sin(angle)
-        return start[:, 0] + 75.0 - now
 
-    low = start[:, 2] < 8.0  # what lies on the plate
-    assert np.median(along(200.0)[low]) < 1.0
-    assert along(250.0).max() > 5.0
-    assert np.median(along(400.0)[low]) < 3.0
-    assert np.median(along(600.0)[low]) > 5.0
-    assert found.history["kinetic"][-1] > 100.0
+@pytest.mark.slow
+def test_a_cone_of_sand_sheds_before_it_slides(tmp_path: Path) -> None:
+    """[T] 8.3: grain runs down the flank from about 200 ms, where flank and plate together stand at 30 degrees."""
+    found = tipped(tmp_path / "tipping", "sand.yaml", 450.0)
+    early, late = (np.quantile(along(found, t + 100.0) - along(found, t), 0.95) for t in (50.0, 300.0))
+    assert early < 0.8
+    assert late > 5.0 * early
+    assert np.median(along(found, 400.0)[lowest(found)]) < 0.5
