@@ -70,6 +70,7 @@ def rows_of(p: Problem, contact: Contact, cures: Cures, *, local: bool) -> Rows:
         sleep=p.sleep > 0.0,
         birth=p.birth is not None,
         interface=_unequal(p),
+        relaxed=p.relaxation != 1.0,
         absent=p.birth is not None or any(plane.kind == LIMIT for plane in p.planes),
     )
 
@@ -177,7 +178,7 @@ def described(p: Problem, contact: Contact, cures: Cures, has: Rows, threads: in
         "pair viscosity": has.heat,
         "walls that bear their neighbours' stress": any(b.bearing for b in p.bodies),
         f"h option {p.h_option}": has.changing_h,
-        f"dynamic relaxation {p.relaxation:g}": p.relaxation != 1.0,
+        f"dynamic relaxation {p.relaxation:g}": has.relaxed,
         f"{len(p.planes)} boundary plane(s)": bool(p.planes),
         "base acceleration by curve": has.body_work,
         "births": has.birth,

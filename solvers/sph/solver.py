@@ -29,7 +29,6 @@ from .state import Arrays, State
 
 SKIN = 0.25  # of the largest h: the list's spare radius
 CHECKED = 50  # steps between looks at the energy balance, which the original's coupling does not keep
-STORED = ("contact_energy", "contact_dissipated", "artificial_energy")  # columns that stand at the end
 SMALL = 2000  # fewer particles run on one thread: a parallel region costs more than it saves
 
 Floats = NDArray[np.float64]
@@ -349,12 +348,12 @@ class Solver:
         """One row of history.csv: energies, momentum, the contact force on the first material.
 
         `internal` is elastic and dissipated energy together, `dissipated` the part that plastic flow and viscosity
-        took; kinetic + internal + contact_energy + contact_dissipated + artificial_energy - external_work stays
-        constant.
+        took; kinetic + internal + contact_energy + contact_dissipated + artificial_energy + relaxation_dissipated -
+        external_work stays constant.
         """
         s, n = self._state, self.live
         energies = self.energies()
-        stored = {name: energies.pop(name) for name in STORED}
+        stored = {name: energies.pop(name) for name in measures.STORED}
         absent = energies.pop("absent")
         momentum = np.zeros(3)
         moving = s.fixed[:n] & DRIVEN == 0

@@ -34,7 +34,7 @@ class Arrays(NamedTuple):
     hourglass: rows of `nominal`; nominal (d*d): V P M^-1 - kappa (F - I)/2. held (2 d, m): of
     stiff bodies with local steps, see `local`. hoop: r u, see `rings`. still, quiet, push: of sleeping, see `rest`;
     push (2 d, m): the speed that a sleeper was pushed to, and its acceleration when it fell asleep.
-    interface (0 | 1, m): see `across.interface_speed`. impulse, thrust (d, m): of what is driven, see `driving`;
+    relaxed (0 | 1, m): energy that dynamic relaxation took; interface (0 | 1, m): see `across.interface_speed`. impulse, thrust (d, m): of what is driven, see `driving`;
     face_slip: friction on facets, see `facing`.
     """
 
@@ -112,6 +112,7 @@ class Arrays(NamedTuple):
     quiet: Any
     push: Any
     interface: Any
+    relaxed: Any
 
 
 class Numbers(NamedTuple):
@@ -174,7 +175,7 @@ class Rows:
     between bodies, normals; wall_slip: walls with friction; total-Lagrangian bodies; local steps; hoop stress of
     a body of revolution; sleep of what is at rest; birth of particles to come; absent: whether
     particles may be, which takes no row; interface: bodies much heavier and stiffer than their neighbours; driven
-    particles; face_slip: rows of friction on facets.
+    particles; face_slip: rows of friction on facets; relaxed: dynamic relaxation.
     """
 
     state: int = 0
@@ -201,6 +202,7 @@ class Rows:
     birth: bool = False
     absent: bool = False
     interface: bool = False
+    relaxed: bool = False
 
 
 _WHOLE = ("id", "material", "fixed")  # what is counted in whole numbers, beside the rows
@@ -229,7 +231,7 @@ class State:
             "deformation": d * d if has.lagrangian else 0, "hourglass": HOURGLASS if has.lagrangian else 0,
             "held": 2 * d * has.local, "impulse": d * has.driven, "face_slip": has.face_slip,
             "still": int(has.sleep), "quiet": int(has.sleep), "push": 2 * d * has.sleep, "birth": int(has.birth),
-            "interface": int(has.interface),
+            "interface": int(has.interface), "relaxed": int(has.relaxed),
             "state": has.state,
             "gradient": d * d, "s": (d * d if has.correction or has.hoop else 6 if solid else 3), "nearest": 1,
             "c": d if has.contact else 0, "correction": (6 if solid else 3) if has.correction else 0,
@@ -384,4 +386,5 @@ class State:
             quiet=self.row("quiet"),
             push=self.rows("push"),
             interface=self.rows("interface"),
+            relaxed=self.rows("relaxed"),
         )
