@@ -16,6 +16,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..bits import bits_of, of_bits
+from ..gather import LANES, ROOM, gather
 from ..jit import kernel
 from .smoothing import inverse_root, shape_slope, shape_value
 
@@ -30,26 +31,45 @@ SEEN = 0.02
 
 @kernel
 def velocity_gradient(
-    i0, i1, first, count, rows, shape, x, y, solid, z, u, v, w, volume, h, inverse_h2, scale, line, gradient, correction
+    i0, i1, first, count, rows, shape, packed, solid, h, inverse_h2, scale, line, gradient, correction
 ):
-    """grad v_i = sum_j V_j (v_j - v_i) (x) grad_i W_ij ([T] 4.6.1.13), with the positions that are handed in.
+    """grad v_i = sum_j V_j (v_j - v_i) (x) grad_i W_ij ([T] 4.6.1.13), of the packed motion.
 
-    solid: None in the plane, where z and w are not looked at. correction: None, or (6 | 3, n + 1) for the inverse B of
+    solid: None in the plane; h: None where all are equal. correction: None, or (6 | 3, n + 1) for the inverse B of
     the shape matrix sum_j V_j (x_j - x_i) (x) grad_i W_ij, which then makes the gradient exact for linear fields
     (Randles & Libersky 1996): grad v B.
     """
+    near = np.empty((LANES, ROOM))
+    x = near[0]
+    y = near[1]
+    if solid is not None:
+        z = near[2]
+        u = near[3]
+        v = near[4]
+        w = near[5]
+        volume = near[6]
+        size = near[7]
+    else:
+        u = near[2]
+        v = near[3]
+        volume = near[4]
+        size = near[5]
     for i in range(i0, i1):
-        xi = x[i]
-        yi = y[i]
-        ui = u[i]
-        vi = v[i]
+        xi = packed[i, 0]
+        yi = packed[i, 1]
+        if solid is not None:
+            zi = packed[i, 2]
+            ui = packed[i, 3]
+            vi = packed[i, 4]
+            wi = packed[i, 5]
+        else:
+            ui = packed[i, 2]
+            vi = packed[i, 3]
         ux = 0.0
         uy = 0.0
         vx = 0.0
         vy = 0.0
         if solid is not None:
-            zi = z[i]
-            wi = w[i]
             uz = 0.0
             vz = 0.0
             wx = 0.0
@@ -65,54 +85,67 @@ def velocity_gradient(
                 mzx = 0.0
         if h is not None:
             hi = 0.5 * h[i]
-        begin = np.uint64(first[i])
-        for k in range(np.uint64(count[i])):
-            j = rows[begin + k]
-            dx = xi - x[j]
-            dy = yi - y[j]
-            r2 = dx * dx + dy * dy
-            if solid is not None:
-                dz = zi - z[j]
-                r2 += dz * dz
-            if h is not None:
-                mean = hi + 0.5 * h[j]
-                ih2 = 1.0 / (mean * mean)
-                factor = scale * ih2 * ih2
+        begin = first[i]
+        end = begin + count[i]
+        while begin < end:
+            some = min(ROOM, end - begin)
+            for at in range(0, some, LANES):
                 if solid is not None:
-                    factor *= mean * ih2
-                if line is not None:
-                    factor *= mean
-            else:
-                ih2 = inverse_h2
-                factor = scale
-            q2 = r2 * ih2 + TINY
-            iq = inverse_root(q2)
-            factor = factor * volume[j] * shape_slope(shape, q2 * iq, iq)
-            gx = dx * factor
-            gy = dy * factor
-            du = u[j] - ui
-            dv = v[j] - vi
-            ux += du * gx
-            uy += du * gy
-            vx += dv * gx
-            vy += dv * gy
-            if correction is not None:
-                mxx -= dx * gx
-                myy -= dy * gy
-                mxy -= dx * gy
+                    if h is not None:
+                        gather(packed, rows, begin + at, near, at, 8)
+                    else:
+                        gather(packed, rows, begin + at, near, at, 7)
+                elif h is not None:
+                    gather(packed, rows, begin + at, near, at, 6)
+                else:
+                    gather(packed, rows, begin + at, near, at, 5)
+            begin += some
+            for k in range(np.uint64(some)):
+                dx = xi - x[k]
+                dy = yi - y[k]
+                r2 = dx * dx + dy * dy
                 if solid is not None:
-                    mzx -= dz * gx
-                    myz -= dz * gy
-            if solid is not None:
-                gz = dz * factor
-                dw = w[j] - wi
-                uz += du * gz
-                vz += dv * gz
-                wx += dw * gx
-                wy += dw * gy
-                wz += dw * gz
+                    dz = zi - z[k]
+                    r2 += dz * dz
+                if h is not None:
+                    mean = hi + 0.5 * size[k]
+                    ih2 = 1.0 / (mean * mean)
+                    factor = scale * ih2 * ih2
+                    if solid is not None:
+                        factor *= mean * ih2
+                    if line is not None:
+                        factor *= mean
+                else:
+                    ih2 = inverse_h2
+                    factor = scale
+                q2 = r2 * ih2 + TINY
+                iq = inverse_root(q2)
+                factor = factor * volume[k] * shape_slope(shape, q2 * iq, iq)
+                gx = dx * factor
+                gy = dy * factor
+                du = u[k] - ui
+                dv = v[k] - vi
+                ux += du * gx
+                uy += du * gy
+                vx += dv * gx
+                vy += dv * gy
                 if correction is not None:
-                    mzz -= dz * gz
+                    mxx -= dx * gx
+                    myy -= dy * gy
+                    mxy -= dx * gy
+                    if solid is not None:
+                        mzx -= dz * gx
+                        myz -= dz * gy
+                if solid is not None:
+                    gz = dz * factor
+                    dw = w[k] - wi
+                    uz += du * gz
+                    vz += dv * gz
+                    wx += dw * gx
+                    wy += dw * gy
+                    wz += dw * gz
+                    if correction is not None:
+                        mzz -= dz * gz
         if correction is not None:
             if solid is not None:
                 cxx = myy * mzz - myz * myz
@@ -190,7 +223,7 @@ def velocity_gradient(
 
 @kernel
 def momentum(
-    i0, i1, first, count, rows, shape, x, y, z, s, weight, h, inverse_h2, scale, line, body, ax, ay, az,
+    i0, i1, first, count, rows, shape, packed, beside, z, s, weight, h, inverse_h2, scale, line, body, ax, ay, az,
     nearest, density, corrected, artificial, inverse_w, bx, by, bz,
 ):  # fmt: skip
     """a_i = sum_j m_j (s_i + s_j) . grad_i W_ij + g: the sum form that conserves momentum pair by pair.
@@ -205,48 +238,71 @@ def momentum(
     part of the acceleration. It is the term of Monaghan (2000) and Gray, Monaghan & Swift (2001), taken along the pair,
     where the instability W'' sigma > 0 lives, in place of the principal axes: central, so that it turns nothing.
     """
-    sxx = s[0]
-    if corrected is not None:
-        sxy = s[1]
-        if z is not None:
-            szx = s[6]
-            sxz = s[2]
-            syx = s[3]
-            syy = s[4]
-            syz = s[5]
-            szy = s[7]
-            szz = s[8]
+    near = np.empty((LANES, ROOM))
+    x = near[0]
+    y = near[1]
+    if z is not None:
+        more = np.empty((LANES, ROOM))
+        weights = more[0]
+        size = more[1]
+        sxx = near[2]
+        if corrected is not None:
+            sxy = near[3]
+            sxz = near[4]
+            syx = near[5]
+            syy = near[6]
+            syz = near[7]
+            szx = more[2]
+            szy = more[3]
+            szz = more[4]
         else:
-            syx = s[2]
-            syy = s[3]
+            syy = near[3]
+            szz = near[4]
+            sxy = near[5]
+            syz = near[6]
+            szx = near[7]
     else:
-        syy = s[1]
-        if z is not None:
-            szz = s[2]
-            sxy = s[3]
-            syz = s[4]
-            szx = s[5]
+        weights = near[2]
+        size = near[3]
+        sxx = near[4]
+        if corrected is not None:
+            sxy = near[5]
+            syx = near[6]
+            syy = near[7]
         else:
-            sxy = s[2]
+            syy = near[5]
+            sxy = near[6]
     for i in range(i0, i1):
-        xi = x[i]
-        yi = y[i]
-        xxi = sxx[i]
-        yyi = syy[i]
-        xyi = sxy[i]
+        xi = packed[i, 0]
+        yi = packed[i, 1]
+        xxi = s[0, i]
+        if corrected is not None:
+            xyi = s[1, i]
+            if z is not None:
+                xzi = s[2, i]
+                yxi = s[3, i]
+                yyi = s[4, i]
+                yzi = s[5, i]
+                zxi = s[6, i]
+                zyi = s[7, i]
+                zzi = s[8, i]
+            else:
+                yxi = s[2, i]
+                yyi = s[3, i]
+        else:
+            yyi = s[1, i]
+            if z is not None:
+                zzi = s[2, i]
+                xyi = s[3, i]
+                yzi = s[4, i]
+                zxi = s[5, i]
+            else:
+                xyi = s[2, i]
         a0 = 0.0
         a1 = 0.0
         if z is not None:
             zi = z[i]
-            zzi = szz[i]
-            yzi = syz[i]
-            zxi = szx[i]
             a2 = 0.0
-        if corrected is not None:
-            yxi = syx[i]
-            if z is not None:
-                xzi = sxz[i]
-                zyi = szy[i]
         if artificial is not None:
             b0 = 0.0
             b1 = 0.0
@@ -256,68 +312,83 @@ def momentum(
             hi = 0.5 * h[i]
         if nearest is not None:
             least = ALONE
-        begin = np.uint64(first[i])
-        for k in range(np.uint64(count[i])):
-            j = rows[begin + k]
-            dx = xi - x[j]
-            dy = yi - y[j]
-            r2 = dx * dx + dy * dy
-            if z is not None:
-                dz = zi - z[j]
-                r2 += dz * dz
-            if nearest is not None:
-                least = min(least, bits_of(r2))
-            if h is not None:
-                mean = hi + 0.5 * h[j]
-                ih2 = 1.0 / (mean * mean)
-                factor = scale * ih2 * ih2
+        begin = first[i]
+        end = begin + count[i]
+        while begin < end:
+            some = min(ROOM, end - begin)
+            for at in range(0, some, LANES):
                 if z is not None:
-                    factor *= mean * ih2
-                if line is not None:
-                    factor *= mean
-            else:
-                ih2 = inverse_h2
-                factor = scale
-            if weight is not None:
-                factor *= weight[j]
-            q2 = r2 * ih2 + TINY
-            iq = inverse_root(q2)
-            factor *= shape_slope(shape, q2 * iq, iq)
-            gx = dx * factor
-            gy = dy * factor
-            xy = xyi + sxy[j]
-            yx = xy
-            if corrected is not None:
-                yx = yxi + syx[j]
-            fx = (xxi + sxx[j]) * gx + xy * gy
-            fy = yx * gx + (yyi + syy[j]) * gy
-            if z is not None:
-                gz = dz * factor
-                yz = yzi + syz[j]
-                zx = zxi + szx[j]
-                if corrected is not None:
-                    xz = xzi + sxz[j]
-                    zy = zyi + szy[j]
+                    gather(packed, rows, begin + at, near, at, 8)
+                    if corrected is not None:
+                        gather(beside, rows, begin + at, more, at, 5)
+                    elif h is not None or weight is not None:
+                        gather(beside, rows, begin + at, more, at, 2)
+                elif corrected is not None:
+                    gather(packed, rows, begin + at, near, at, 8)
                 else:
-                    xz = zx
-                    zy = yz
-                fx += xz * gz
-                fy += yz * gz
-                fz = zx * gx + zy * gy + (zzi + szz[j]) * gz
-                a2 += fz
-            a0 += fx
-            a1 += fy
-            if artificial is not None:
-                pull = fx * dx + fy * dy
+                    gather(packed, rows, begin + at, near, at, 7)
+            start = np.uint64(begin)
+            begin += some
+            for k in range(np.uint64(some)):
+                dx = xi - x[k]
+                dy = yi - y[k]
+                r2 = dx * dx + dy * dy
                 if z is not None:
-                    pull += fz * dz
-                f = shape_value(shape, q2 * iq) * inverse_w
-                f *= f
-                push = artificial * f * f * max(0.0, -pull) * iq * iq * ih2
-                b0 += push * dx
-                b1 += push * dy
+                    dz = zi - z[rows[start + k]]
+                    r2 += dz * dz
+                if nearest is not None:
+                    least = min(least, bits_of(r2))
+                if h is not None:
+                    mean = hi + 0.5 * size[k]
+                    ih2 = 1.0 / (mean * mean)
+                    factor = scale * ih2 * ih2
+                    if z is not None:
+                        factor *= mean * ih2
+                    if line is not None:
+                        factor *= mean
+                else:
+                    ih2 = inverse_h2
+                    factor = scale
+                if weight is not None:
+                    factor *= weights[k]
+                q2 = r2 * ih2 + TINY
+                iq = inverse_root(q2)
+                factor *= shape_slope(shape, q2 * iq, iq)
+                gx = dx * factor
+                gy = dy * factor
+                xy = xyi + sxy[k]
+                yx = xy
+                if corrected is not None:
+                    yx = yxi + syx[k]
+                fx = (xxi + sxx[k]) * gx + xy * gy
+                fy = yx * gx + (yyi + syy[k]) * gy
                 if z is not None:
-                    b2 += push * dz
+                    gz = dz * factor
+                    yz = yzi + syz[k]
+                    zx = zxi + szx[k]
+                    if corrected is not None:
+                        xz = xzi + sxz[k]
+                        zy = zyi + szy[k]
+                    else:
+                        xz = zx
+                        zy = yz
+                    fx += xz * gz
+                    fy += yz * gz
+                    fz = zx * gx + zy * gy + (zzi + szz[k]) * gz
+                    a2 += fz
+                a0 += fx
+                a1 += fy
+                if artificial is not None:
+                    pull = fx * dx + fy * dy
+                    if z is not None:
+                        pull += fz * dz
+                    f = shape_value(shape, q2 * iq) * inverse_w
+                    f *= f
+                    push = artificial * f * f * max(0.0, -pull) * iq * iq * ih2
+                    b0 += push * dx
+                    b1 += push * dy
+                    if z is not None:
+                        b2 += push * dz
         if artificial is not None:
             a0 += b0
             a1 += b1

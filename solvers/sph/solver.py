@@ -62,7 +62,8 @@ class Solver:
         self._slow = n if self._stiff is None else int(np.count_nonzero(~self._stiff[problem.body]))
         has = self._has = setup.rows_of(problem, self._contact, cures, local=self._stiff is not None)
         self._rows_apart = True if has.correction or has.hoop else None
-        self._state = State(n, problem.dimension, has)
+        own = not (self._uniform_h and self._uniform_mass) or self._mixed or has.correction
+        self._state = State(n, problem.dimension, has, packs=(self._plain, own and problem.dimension == 3))
         surface = self._contact.surface
         self.driven = Driven(self._state, n, surface) if has.driven or surface is not None else None
         self._mirrored = any(p.kind in (ghosts.SYMMETRY, ghosts.PERIODIC) for p in problem.planes)

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..gather import table
 from ..jit import kernel
 from ..neighbours import NeighbourList
 from ..threads import run, share
@@ -34,7 +35,7 @@ class Arrays(NamedTuple):
     hourglass: rows of `nominal`; nominal (d*d): V P M^-1 - kappa (F - I)/2. held (2 d, m): of
     stiff bodies with local steps, see `local`. hoop: r u, see `rings`. still, quiet, push: of sleeping, see `rest`;
     push (2 d, m): the speed that a sleeper was pushed to, and its acceleration when it fell asleep.
-    relaxed (0 | 1, m): energy that dynamic relaxation took; interface (0 | 1, m): see `across.interface_speed`. impulse, thrust (d, m): of what is driven, see `driving`;
+    relaxed (0 | 1, m): energy that dynamic relaxation took; packed, beside (m, 8): see `packed`; interface (0 | 1, m): see `across.interface_speed`. impulse, thrust (d, m): of what is driven, see `driving`;
     face_slip: friction on facets, see `facing`.
     """
 
@@ -113,6 +114,8 @@ class Arrays(NamedTuple):
     push: Any
     interface: Any
     relaxed: Any
+    packed: Any
+    beside: Any
 
 
 class Numbers(NamedTuple):
@@ -211,10 +214,10 @@ _WHOLE = ("id", "material", "fixed")  # what is counted in whole numbers, beside
 class State:
     """Storage of the rows above in one array of (rows, n + room + 1), so that sorting moves everything at once.
 
-    room: for images; the dummy is the last entry.
+    room: for images; the dummy is the last entry. packs: whether loops read the two tables of `packed`.
     """
 
-    def __init__(self, n: int, dimension: int, has: Rows, room: int = 0) -> None:
+    def __init__(self, n: int, dimension: int, has: Rows, room: int = 0, packs: tuple[bool, bool] = (True, True)) -> None:
         solid = dimension == 3
         d = 3 if solid else 2  # a line runs as a plane with y = 0
         self.n = n
@@ -248,6 +251,7 @@ class State:
         # (of sleepers nothing is made anew)
         self.lasting = at if has.sleep else self.slices["state"].stop
         self._rows = at
+        self._packs = packs
         self.id: NDArray[np.int64]
         self.material: NDArray[np.int64]
         self.fixed: NDArray[np.int64]
@@ -259,6 +263,7 @@ class State:
         if width % 512 == 0:
             width += 8  # rows a multiple of 4 KiB apart would share the same cache sets
         self.numbers: Floats = np.zeros((self._rows, width))
+        self.packed, self.beside = (table(self.dummy + 1 if packs else 0) for packs in self._packs)
         self.id, self.material, self.fixed = (np.zeros(self.dummy + 1, np.int64) for _ in range(3))
 
     def make_room(self, room: int) -> None:
@@ -387,4 +392,6 @@ class State:
             push=self.rows("push"),
             interface=self.rows("interface"),
             relaxed=self.rows("relaxed"),
+            packed=self.packed,
+            beside=self.beside,
         )

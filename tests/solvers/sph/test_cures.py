@@ -11,9 +11,11 @@ import pytest
 from sph_scenes import ELASTIC, finished, impact, jittered, lattice, one_body, periodic
 
 from zrno.solvers.materials import Elastic
-from zrno.solvers.sph import Cures, Plane, Problem, Solver, pairs, particle
+from zrno.solvers.sph import Cures, Plane, Problem, Solver, pairs, particle, step
 from zrno.solvers.sph.ghosts import SYMMETRY
 from zrno.solvers.sph.step import INSTANT
+
+NOBODY = np.zeros(3, np.int64)  # to wait for
 
 
 def gradients(problem: Problem, slope: np.ndarray) -> np.ndarray:
@@ -23,8 +25,9 @@ def gradients(problem: Problem, slope: np.ndarray) -> np.ndarray:
     x = solver._state.rows("x")[:d, :n]
     solver._state.rows("u")[:d, :n] = slope @ x
     solid = True if d == 3 else None
+    step.pack_motion(0, 1, NOBODY, 0, solid, None, None, True, a)
     pairs.velocity_gradient(
-        0, n, a.first, a.count, a.rows, solver._shape, a.x, a.y, solid, a.z, a.u, a.v, a.w, a.volume, None,
+        0, n, a.first, a.count, a.rows, solver._shape, a.packed, solid, None,
         numbers.inverse_h2, numbers.scale, None, a.gradient, a.correction if problem.cures.correction else None,
     )  # fmt: skip
     return np.array(a.gradient[:, :n].T.reshape(n, d, d))
@@ -51,8 +54,9 @@ def test_the_correction_of_a_particle_that_sees_two_others_from_afar_is_bounded(
     assert 0.01 < seen[0, 0, 0] < 0.5  # far from exact, and no harm
     solver = Solver(problem, threads=1)
     a = solver._arrays()
+    step.pack_motion(0, 1, NOBODY, 0, None, None, None, True, a)
     pairs.velocity_gradient(
-        0, 3, a.first, a.count, a.rows, solver._shape, a.x, a.y, None, a.z, a.u, a.v, a.w, a.volume, None,
+        0, 3, a.first, a.count, a.rows, solver._shape, a.packed, None, None,
         solver._numbers.inverse_h2, solver._numbers.scale, None, a.gradient, a.correction,
     )  # fmt: skip
     assert np.abs(a.correction[:, :3]).max() < 1.0 / pairs.SEEN
@@ -71,9 +75,9 @@ def turned(problem: Problem, turns: int, steps: int, start: tuple[float, ...]) -
         old, new = (np.array([[np.cos(t), -np.sin(t)], [np.sin(t), np.cos(t)]]) @ x0 for t in (before, after))
         s.rows("x_half")[:, :n] = 0.5 * (old + new)
         s.rows("u")[:, :n] = new - old
+        step.pack_motion(0, 1, NOBODY, 0, None, None, None, True, a)
         pairs.velocity_gradient(
-            0, n, a.first, a.count, a.rows, solver._shape, a.x_half, a.y_half, None, None, a.u, a.v, None, a.volume,
-            None, numbers.inverse_h2, numbers.scale, None, a.gradient, correction,
+            0, n, a.first, a.count, a.rows, solver._shape, a.packed, None, None, numbers.inverse_h2, numbers.scale, None, a.gradient, correction,
         )  # fmt: skip
         particle.constitutive(
             0, n, None, 0, ELASTIC, 1.0, correction, None, None, None, None, None, a, numbers
