@@ -64,7 +64,8 @@ def particles(p: Problem, s: State, velocity: Floats, live: int) -> dict[str, Fl
 
 def energies(p: Problem, s: State, velocity: Floats, live: int, given: float = 0.0) -> dict[str, float]:
     """Kinetic, internal (with the dissipated), dissipated, external work, stored by contact and artificial stress,
-    what friction and dashpots of the contact took and what dynamic relaxation did, of the first `live` particles; absent: the total of the others.
+    what friction and dashpots of the contact and what dynamic relaxation took, of the first `live` particles; absent:
+    the total of the others.
     given: work of what drives particles, which have no weight.
     """
     there = _energies(p, s, velocity, 0, live)

@@ -197,21 +197,9 @@ def _unrolled(laws, number, i0, i1, z, dt, correction, density_rate, stress_rate
             i0, i1, z, number, laws[0], dt, correction, density_rate, stress_rate, heat, wave, hoop, arrays, numbers
         )
         each_law(
-            laws[1:],
-            number + 1,
-            i0,
-            i1,
-            z,
-            dt,
-            correction,
-            density_rate,
-            stress_rate,
-            heat,
-            wave,
-            hoop,
-            arrays,
+            laws[1:], number + 1, i0, i1, z, dt, correction, density_rate, stress_rate, heat, wave, hoop, arrays,
             numbers,
-        )
+        )  # fmt: skip
 
     return each
 

@@ -91,6 +91,7 @@ def numbers_of(p: Problem, contact: Contact, shape: Shape, *, mirrors: bool) -> 
     normal = normaliser(shape, p.dimension)
     times, values = p.body_curve or (np.zeros(2), np.zeros((2, 3)))
     spacing = float(np.median(p.sections ** (1.0 / p.dimension) / p.h))
+    at_spacing = value_at(shape, spacing)  # zero of particles that do not reach each other
     wave = np.array([sound_speed(b.law, b.density, _first_energy(p, k)) for k, b in enumerate(p.bodies)])
     scale = normal / h ** (p.dimension + 2) if uniform_h(p) else normal
     return Numbers(
@@ -113,7 +114,7 @@ def numbers_of(p: Problem, contact: Contact, shape: Shape, *, mirrors: bool) -> 
         least_distance=IMAGE if mirrors else 0.0,
         wall=np.array([b.density if b.bearing else 0.0 for b in p.bodies]),
         kinematic_viscosity=np.array([getattr(b.law, "viscosity", 0.0) / b.density for b in p.bodies]),
-        inverse_w=1.0 / value_at(shape, spacing),
+        inverse_w=1.0 / at_spacing if at_spacing > 0.0 else 0.0,
         step_option=p.step_option,
         step_factor=p.step_factor,
         original=p.original,

@@ -35,8 +35,9 @@ class Arrays(NamedTuple):
     hourglass: rows of `nominal`; nominal (d*d): V P M^-1 - kappa (F - I)/2. held (2 d, m): of
     stiff bodies with local steps, see `local`. hoop: r u, see `rings`. still, quiet, push: of sleeping, see `rest`;
     push (2 d, m): the speed that a sleeper was pushed to, and its acceleration when it fell asleep.
-    relaxed (0 | 1, m): energy that dynamic relaxation took; packed, beside (m, 8): see `packed`; interface (0 | 1, m): see `across.interface_speed`. impulse, thrust (d, m): of what is driven, see `driving`;
-    face_slip: friction on facets, see `facing`.
+    interface (0 | 1, m): see `across.interface_speed`. impulse, thrust (d, m): of what is driven, see `driving`;
+    face_slip: friction on facets, see `facing`. relaxed (0 | 1, m): energy that dynamic relaxation took.
+    packed, beside (m, 8): see `packed`.
     """
 
     x: Any
@@ -212,12 +213,12 @@ _WHOLE = ("id", "material", "fixed")  # what is counted in whole numbers, beside
 
 
 class State:
-    """Storage of the rows above in one array of (rows, n + room + 1), so that sorting moves everything at once.
+    """Storage of the rows above in one array of (rows, n + images + 1), so that sorting moves everything at once.
 
-    room: for images; the dummy is the last entry. packs: whether loops read the two tables of `packed`.
+    The dummy is the last entry, behind the images. packs: whether loops read the two tables of `packed`.
     """
 
-    def __init__(self, n: int, dimension: int, has: Rows, room: int = 0, packs: tuple[bool, bool] = (True, True)) -> None:
+    def __init__(self, n: int, dimension: int, has: Rows, *, packs: tuple[bool, bool]) -> None:
         solid = dimension == 3
         d = 3 if solid else 2  # a line runs as a plane with y = 0
         self.n = n
@@ -255,7 +256,7 @@ class State:
         self.id: NDArray[np.int64]
         self.material: NDArray[np.int64]
         self.fixed: NDArray[np.int64]
-        self._allocate(room)
+        self._allocate(0)
 
     def _allocate(self, room: int) -> None:
         self.dummy = self.n + room

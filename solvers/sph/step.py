@@ -17,22 +17,9 @@ import numpy as np
 
 from ..jit import kernel
 from ..threads import barrier, claim, share
-from . import (
-    across,
-    bearing,
-    cures,
-    driving,
-    facing,
-    ghosts,
-    lagrangian,
-    nominal,
-    packed,
-    pairs,
-    rest,
-    rings,
-    slip,
-    walls,
-)
+from . import across, bearing, cures, driving, facing, ghosts, lagrangian, nominal, pairs, rest, rings, slip, walls
+from .momentum import momentum
+from .packed import pack_forces, pack_motion
 from .particle import critical_step, drift, each_law, half_work, kick
 
 # entries of `progress`, the loop's own memory
@@ -49,31 +36,6 @@ GROWTH = 1.1  # a step grows by no more than this
 INSTANT = 1e-300  # a duration that divides no strain rate by zero
 TOWARDS = 0.5  # of its distance from the axis a particle may go in a critical step
 COLLAPSE = 1e-7  # a step this small beside the first one will not recover
-
-
-@kernel
-def pack_motion(thread, threads, sync, start, solid, h, hoop, plain, arrays):
-    """Packs what `strain` reads of neighbours, of all entries from `start` on. The threads meet after it."""
-    if plain is not None:
-        a, b = share(len(arrays.x) - start, thread, threads)
-        u = arrays.u if hoop is None else hoop
-        packed.pack_motion(
-            start + a, start + b, solid, arrays.x_half, arrays.y_half, arrays.z_half, u, arrays.v, arrays.w,
-            arrays.volume, h, arrays.packed,
-        )  # fmt: skip
-        barrier(sync, threads)
-
-
-@kernel
-def pack_forces(thread, threads, sync, start, z, h, mass, mixed, rows_apart, plain, arrays):
-    """Packs what `force` reads of neighbours, of all entries from `start` on. The threads meet after it."""
-    if plain is not None:
-        a, b = share(len(arrays.x) - start, thread, threads)
-        weight = mass if mixed is None else arrays.volume
-        packed.pack_forces(
-            start + a, start + b, z, arrays.x, arrays.y, arrays.s, weight, h, rows_apart, arrays.packed, arrays.beside
-        )
-        barrier(sync, threads)
 
 
 @kernel
@@ -120,9 +82,9 @@ def force(i0, i1, shape, z, h, mass, nearest, line, cx, contact, mixed, correcti
     if hoop is not None:
         body = rings.NO_FORCE
     if plain is not None:
-        pairs.momentum(
-            i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.packed, arrays.beside, z, arrays.s, weight, h,
-            numbers.inverse_h2, scale, line, body, arrays.ax, arrays.ay, arrays.az, nearest, density,
+        momentum(
+            i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.packed, arrays.beside, z, arrays.s, weight,
+            h, numbers.inverse_h2, scale, line, body, arrays.ax, arrays.ay, arrays.az, nearest, density,
             rows_apart, artificial, numbers.inverse_w, bx, arrays.by, arrays.bz,
         )  # fmt: skip
     if hoop is not None:

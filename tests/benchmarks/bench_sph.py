@@ -22,7 +22,7 @@ import numpy as np  # noqa: E402  (the clock starts before the imports)
 from zrno.solvers.jit import compile_seconds  # noqa: E402
 from zrno.solvers.materials import Elastic  # noqa: E402
 from zrno.solvers.neighbours import Cells  # noqa: E402
-from zrno.solvers.sph import Body, Problem, Solver, pairs, particle, step  # noqa: E402
+from zrno.solvers.sph import Body, Problem, Solver, momentum, packed, pairs, particle  # noqa: E402
 
 STEPS = 100
 
@@ -80,15 +80,16 @@ def phases(problem: Problem, builds: float) -> dict[str, float]:
     return {
         "velocity gradient": nanoseconds(
             lambda: pairs.velocity_gradient(
-                0, n, a.first, a.count, a.rows, s._shape, a.packed, True, None, k.inverse_h2, k.scale, None, a.gradient, None,
+                0, n, a.first, a.count, a.rows, s._shape, a.packed, True, None, k.inverse_h2, k.scale, None, a.gradient,
+                None,
             ), n),
         "momentum": nanoseconds(
-            lambda: pairs.momentum(
-                0, n, a.first, a.count, a.rows, s._shape, a.packed, a.beside, a.z, a.s, None, None, k.inverse_h2, k.force_scale,
-                None, k.body, a.ax, a.ay, a.az, a.nearest, None, None, None, 1.0, None, None, None,
+            lambda: momentum.momentum(
+                0, n, a.first, a.count, a.rows, s._shape, a.packed, a.beside, a.z, a.s, None, None, k.inverse_h2,
+                k.force_scale, None, k.body, a.ax, a.ay, a.az, a.nearest, None, None, None, 1.0, None, None, None,
             ), n),
-        "packing": nanoseconds(lambda: step.pack_motion(0, 1, sync, 0, True, None, None, True, a), n)
-        + nanoseconds(lambda: step.pack_forces(0, 1, sync, 0, a.z, None, None, None, None, True, a), n),
+        "packing": nanoseconds(lambda: packed.pack_motion(0, 1, sync, 0, True, None, None, True, a), n)
+        + nanoseconds(lambda: packed.pack_forces(0, 1, sync, 0, a.z, None, None, None, None, True, a), n),
         "stress": sum(
             nanoseconds(
                 lambda m=m: particle.constitutive(

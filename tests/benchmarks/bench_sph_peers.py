@@ -58,9 +58,10 @@ def rings() -> Problem:
     half, n = len(x), 2 * len(x)
     v = np.zeros((n, 3))
     v[:half, 0], v[half:, 0] = 10.0, -10.0
+    away = np.array([41.5, 0.0, 0.0])
     law = Elastic.from_engineering(0.03, 0.3975)
     return Problem(
-        dimension=2, x=np.concatenate([x - (41.5, 0.0, 0.0), x + (41.5, 0.0, 0.0)]), v=v, mass=np.full(n, rho * dx**2),
+        dimension=2, x=np.concatenate([x - away, x + away]), v=v, mass=np.full(n, rho * dx**2),
         h=np.full(n, 1.5 * dx), density=np.full(n, rho), body=np.repeat([0, 1], half),
         bodies=tuple(Body(i, "ring", law, rho, 0.5, 2.0) for i in (1, 2)), end_time=1e9,
     )  # fmt: skip
