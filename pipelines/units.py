@@ -26,7 +26,10 @@ class Units:
         per = {3: "", 2: f"/{self.length}", 1: f"/{self.length}^2"}[dimension]
         speed = f"{self.length}/{self.time}"
         momentum = f"{self.mass}{per} {speed}"
-        energies = ("kinetic", "internal", "dissipated", "external_work", "contact_energy")
+        energies = (
+            "kinetic", "internal", "dissipated", "external_work", "contact_energy", "contact_dissipated",
+            "artificial_energy", "relaxation_dissipated", "absent_energy", "interface_energy",
+        )  # fmt: skip
         return {
             **dict.fromkeys(("time", "dt"), self.time),
             **dict.fromkeys(("position", "displacement", "radius"), self.length),

@@ -21,8 +21,8 @@ import numpy as np
 
 from ..bits import bits_of, of_bits
 from ..jit import kernel
+from .momentum import ALONE
 from .nominal import CHANGE, FLATTENED, KAPPA, LENGTH, PSI
-from .pairs import ALONE
 
 
 @kernel

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from ..jit import kernel
 from ..threads import barrier, claim, share
-from . import across, slip, step, walls
+from . import across, packed, slip, step, walls
 from .nominal import nominal_stress
 from .particle import drift, each_law, half_work, kick
 from .problem import Problem
@@ -215,6 +215,7 @@ def advance(
             from_chunk = 0 if begins else slow_chunks
             chunks = slow_chunks + fast_chunks
             if last > 0.0 or not begins:
+                packed.pack_motion(thread, threads, sync, 0 if begins else split, solid, h, None, plain, arrays)
                 c = from_chunk + claim(sync, taken)
                 while c < chunks:
                     if c < slow_chunks:
@@ -260,6 +261,9 @@ def advance(
                 slip.phase(
                     thread, threads, sync, n, n, z, shape, contact, friction, damping, last, None, None, arrays, numbers
                 )
+            packed.pack_forces(
+                thread, threads, sync, 0 if begins else split, z, h, mass, None, correction, plain, arrays
+            )  # fmt: skip
             slow_least = np.inf
             fast_least = np.inf
             c = from_chunk + claim(sync, taken)

@@ -15,6 +15,9 @@ from .rings import TURN
 from .smoothing import Shape
 from .state import Arrays, Floats, Numbers, State
 
+# what the fixed columns do not have, each a column of its own at the end of the history
+STORED = ("contact_energy", "contact_dissipated", "artificial_energy", "relaxation_dissipated")
+
 
 def particles(p: Problem, s: State, velocity: Floats, live: int) -> dict[str, Floats | NDArray[np.int64]]:
     """The arrays of a frame, of the first `live` particles in the order of the deck; not of a structure's nodes.
@@ -60,8 +63,9 @@ def particles(p: Problem, s: State, velocity: Floats, live: int) -> dict[str, Fl
 
 
 def energies(p: Problem, s: State, velocity: Floats, live: int, given: float = 0.0) -> dict[str, float]:
-    """Kinetic, internal (with the dissipated), dissipated, external work, stored by contact and artificial stress, and
-    what friction and dashpots of the contact took, of the first `live` particles; absent: the total of the others.
+    """Kinetic, internal (with the dissipated), dissipated, external work, stored by contact and artificial stress,
+    what friction and dashpots of the contact and what dynamic relaxation took, of the first `live` particles; absent:
+    the total of the others.
     given: work of what drives particles, which have no weight.
     """
     there = _energies(p, s, velocity, 0, live)
@@ -90,12 +94,13 @@ def _energies(p: Problem, s: State, velocity: Floats, i0: int, i1: int) -> dict[
         "contact_energy": -sum_of("contact_work") - heat if len(s.rows("contact_work")) else 0.0,
         "artificial_energy": -sum_of("artificial_work"),
         "contact_dissipated": heat,
+        "relaxation_dissipated": sum_of("relaxed"),
     }
 
 
 def total(energies: dict[str, float]) -> float:
     """What stays constant."""
-    stored = energies["contact_energy"] + energies["contact_dissipated"] + energies["artificial_energy"]
+    stored = sum(energies[name] for name in STORED)
     return energies["kinetic"] + energies["internal"] + stored - energies["external_work"] + energies.get("absent", 0.0)
 
 

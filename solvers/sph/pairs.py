@@ -1,6 +1,7 @@
-"""Pair loops over the Verlet list: velocity gradient and momentum.
+"""Pair loops over the Verlet list: the velocity gradient, here, and `momentum`.
 
-Each is a serial function over a block of particles with one contiguous, branch-free inner loop that vectorises; what a
+Each is a serial function over a block of particles. What it reads of the neighbours is packed into cache lines (see
+`packed`) and brought into a buffer of whole vectors; a contiguous, branch-free inner loop over it vectorises. What a
 scene does not have is None and is left out when the loop is compiled: z and w in the plane, h where all smoothing
 lengths are equal, mass where all masses are equal, nearest where the time step does not ask for it, and the cures.
 Arrays have one more entry than there are particles: the dummy that pads the rows, far away.
@@ -15,12 +16,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..bits import bits_of, of_bits
+from ..gather import LANES, ROOM, gather
 from ..jit import kernel
-from .smoothing import inverse_root, shape_slope, shape_value
+from .smoothing import inverse_root, shape_slope
 
 TINY = 1e-30  # keeps the inverse root of coincident particles finite
-ALONE = np.int64(0x7E37E43C8800759C)  # the bits of 1e300: the squared distance of a particle without neighbours
 WELL = 2e-3  # a shape matrix whose determinant is this small beside its mean eigenvalue's power is not inverted
 # 1/tr(inverse) of the shape matrix, below which less and less of the inverse is taken: whole at the corner of a solid
 # block (0.02 at least), and never more than a factor of 50. A grain that flies past two others far off has a small
@@ -30,26 +30,45 @@ SEEN = 0.02
 
 @kernel
 def velocity_gradient(
-    i0, i1, first, count, rows, shape, x, y, solid, z, u, v, w, volume, h, inverse_h2, scale, line, gradient, correction
+    i0, i1, first, count, rows, shape, packed, solid, h, inverse_h2, scale, line, gradient, correction
 ):
-    """grad v_i = sum_j V_j (v_j - v_i) (x) grad_i W_ij ([T] 4.6.1.13), with the positions that are handed in.
+    """grad v_i = sum_j V_j (v_j - v_i) (x) grad_i W_ij ([T] 4.6.1.13), of the packed motion.
 
-    solid: None in the plane, where z and w are not looked at. correction: None, or (6 | 3, n + 1) for the inverse B of
+    solid: None in the plane; h: None where all are equal. correction: None, or (6 | 3, n + 1) for the inverse B of
     the shape matrix sum_j V_j (x_j - x_i) (x) grad_i W_ij, which then makes the gradient exact for linear fields
     (Randles & Libersky 1996): grad v B.
     """
+    near = np.empty((LANES, ROOM))
+    x = near[0]
+    y = near[1]
+    if solid is not None:
+        z = near[2]
+        u = near[3]
+        v = near[4]
+        w = near[5]
+        volume = near[6]
+        size = near[7]
+    else:
+        u = near[2]
+        v = near[3]
+        volume = near[4]
+        size = near[5]
     for i in range(i0, i1):
-        xi = x[i]
-        yi = y[i]
-        ui = u[i]
-        vi = v[i]
+        xi = packed[i, 0]
+        yi = packed[i, 1]
+        if solid is not None:
+            zi = packed[i, 2]
+            ui = packed[i, 3]
+            vi = packed[i, 4]
+            wi = packed[i, 5]
+        else:
+            ui = packed[i, 2]
+            vi = packed[i, 3]
         ux = 0.0
         uy = 0.0
         vx = 0.0
         vy = 0.0
         if solid is not None:
-            zi = z[i]
-            wi = w[i]
             uz = 0.0
             vz = 0.0
             wx = 0.0
@@ -65,54 +84,67 @@ def velocity_gradient(
                 mzx = 0.0
         if h is not None:
             hi = 0.5 * h[i]
-        begin = np.uint64(first[i])
-        for k in range(np.uint64(count[i])):
-            j = rows[begin + k]
-            dx = xi - x[j]
-            dy = yi - y[j]
-            r2 = dx * dx + dy * dy
-            if solid is not None:
-                dz = zi - z[j]
-                r2 += dz * dz
-            if h is not None:
-                mean = hi + 0.5 * h[j]
-                ih2 = 1.0 / (mean * mean)
-                factor = scale * ih2 * ih2
+        begin = first[i]
+        end = begin + count[i]
+        while begin < end:
+            some = min(ROOM, end - begin)
+            for at in range(0, some, LANES):
                 if solid is not None:
-                    factor *= mean * ih2
-                if line is not None:
-                    factor *= mean
-            else:
-                ih2 = inverse_h2
-                factor = scale
-            q2 = r2 * ih2 + TINY
-            iq = inverse_root(q2)
-            factor = factor * volume[j] * shape_slope(shape, q2 * iq, iq)
-            gx = dx * factor
-            gy = dy * factor
-            du = u[j] - ui
-            dv = v[j] - vi
-            ux += du * gx
-            uy += du * gy
-            vx += dv * gx
-            vy += dv * gy
-            if correction is not None:
-                mxx -= dx * gx
-                myy -= dy * gy
-                mxy -= dx * gy
+                    if h is not None:
+                        gather(packed, rows, begin + at, near, at, 8)
+                    else:
+                        gather(packed, rows, begin + at, near, at, 7)
+                elif h is not None:
+                    gather(packed, rows, begin + at, near, at, 6)
+                else:
+                    gather(packed, rows, begin + at, near, at, 5)
+            begin += some
+            for k in range(np.uint64(some)):
+                dx = xi - x[k]
+                dy = yi - y[k]
+                r2 = dx * dx + dy * dy
                 if solid is not None:
-                    mzx -= dz * gx
-                    myz -= dz * gy
-            if solid is not None:
-                gz = dz * factor
-                dw = w[j] - wi
-                uz += du * gz
-                vz += dv * gz
-                wx += dw * gx
-                wy += dw * gy
-                wz += dw * gz
+                    dz = zi - z[k]
+                    r2 += dz * dz
+                if h is not None:
+                    mean = hi + 0.5 * size[k]
+                    ih2 = 1.0 / (mean * mean)
+                    factor = scale * ih2 * ih2
+                    if solid is not None:
+                        factor *= mean * ih2
+                    if line is not None:
+                        factor *= mean
+                else:
+                    ih2 = inverse_h2
+                    factor = scale
+                q2 = r2 * ih2 + TINY
+                iq = inverse_root(q2)
+                factor = factor * volume[k] * shape_slope(shape, q2 * iq, iq)
+                gx = dx * factor
+                gy = dy * factor
+                du = u[k] - ui
+                dv = v[k] - vi
+                ux += du * gx
+                uy += du * gy
+                vx += dv * gx
+                vy += dv * gy
                 if correction is not None:
-                    mzz -= dz * gz
+                    mxx -= dx * gx
+                    myy -= dy * gy
+                    mxy -= dx * gy
+                    if solid is not None:
+                        mzx -= dz * gx
+                        myz -= dz * gy
+                if solid is not None:
+                    gz = dz * factor
+                    dw = w[k] - wi
+                    uz += du * gz
+                    vz += dv * gz
+                    wx += dw * gx
+                    wy += dw * gy
+                    wz += dw * gz
+                    if correction is not None:
+                        mzz -= dz * gz
         if correction is not None:
             if solid is not None:
                 cxx = myy * mzz - myz * myz
@@ -186,162 +218,3 @@ def velocity_gradient(
             gradient[1, i] = uy
             gradient[2, i] = vx
             gradient[3, i] = vy
-
-
-@kernel
-def momentum(
-    i0, i1, first, count, rows, shape, x, y, z, s, weight, h, inverse_h2, scale, line, body, ax, ay, az,
-    nearest, density, corrected, artificial, inverse_w, bx, by, bz,
-):  # fmt: skip
-    """a_i = sum_j m_j (s_i + s_j) . grad_i W_ij + g: the sum form that conserves momentum pair by pair.
-
-    weight: masses, or None where all are equal and in the scale. Where bodies differ in density the sum is
-    a_i = sum_j V_j (sigma_i + sigma_j) / rho_i . grad_i W_ij instead: the one whose work is that of the velocity
-    gradient above; then s is the stress, the weights are the volumes and density is given. body: (3,) g. nearest: None,
-    or (n + 1,) the squared distance to the nearest listed particle. corrected: None, or anything where s is s B.
-
-    artificial: None, or the factor e of the artificial stress: the part of a pair's force that pulls the two together
-    is lessened by e f^4, f = W(r)/W(spacing), inverse_w being the inverse of the latter's value; bx.. then keep that
-    part of the acceleration. It is the term of Monaghan (2000) and Gray, Monaghan & Swift (2001), taken along the pair,
-    where the instability W'' sigma > 0 lives, in place of the principal axes: central, so that it turns nothing.
-    """
-    sxx = s[0]
-    if corrected is not None:
-        sxy = s[1]
-        if z is not None:
-            szx = s[6]
-            sxz = s[2]
-            syx = s[3]
-            syy = s[4]
-            syz = s[5]
-            szy = s[7]
-            szz = s[8]
-        else:
-            syx = s[2]
-            syy = s[3]
-    else:
-        syy = s[1]
-        if z is not None:
-            szz = s[2]
-            sxy = s[3]
-            syz = s[4]
-            szx = s[5]
-        else:
-            sxy = s[2]
-    for i in range(i0, i1):
-        xi = x[i]
-        yi = y[i]
-        xxi = sxx[i]
-        yyi = syy[i]
-        xyi = sxy[i]
-        a0 = 0.0
-        a1 = 0.0
-        if z is not None:
-            zi = z[i]
-            zzi = szz[i]
-            yzi = syz[i]
-            zxi = szx[i]
-            a2 = 0.0
-        if corrected is not None:
-            yxi = syx[i]
-            if z is not None:
-                xzi = sxz[i]
-                zyi = szy[i]
-        if artificial is not None:
-            b0 = 0.0
-            b1 = 0.0
-            if z is not None:
-                b2 = 0.0
-        if h is not None:
-            hi = 0.5 * h[i]
-        if nearest is not None:
-            least = ALONE
-        begin = np.uint64(first[i])
-        for k in range(np.uint64(count[i])):
-            j = rows[begin + k]
-            dx = xi - x[j]
-            dy = yi - y[j]
-            r2 = dx * dx + dy * dy
-            if z is not None:
-                dz = zi - z[j]
-                r2 += dz * dz
-            if nearest is not None:
-                least = min(least, bits_of(r2))
-            if h is not None:
-                mean = hi + 0.5 * h[j]
-                ih2 = 1.0 / (mean * mean)
-                factor = scale * ih2 * ih2
-                if z is not None:
-                    factor *= mean * ih2
-                if line is not None:
-                    factor *= mean
-            else:
-                ih2 = inverse_h2
-                factor = scale
-            if weight is not None:
-                factor *= weight[j]
-            q2 = r2 * ih2 + TINY
-            iq = inverse_root(q2)
-            factor *= shape_slope(shape, q2 * iq, iq)
-            gx = dx * factor
-            gy = dy * factor
-            xy = xyi + sxy[j]
-            yx = xy
-            if corrected is not None:
-                yx = yxi + syx[j]
-            fx = (xxi + sxx[j]) * gx + xy * gy
-            fy = yx * gx + (yyi + syy[j]) * gy
-            if z is not None:
-                gz = dz * factor
-                yz = yzi + syz[j]
-                zx = zxi + szx[j]
-                if corrected is not None:
-                    xz = xzi + sxz[j]
-                    zy = zyi + szy[j]
-                else:
-                    xz = zx
-                    zy = yz
-                fx += xz * gz
-                fy += yz * gz
-                fz = zx * gx + zy * gy + (zzi + szz[j]) * gz
-                a2 += fz
-            a0 += fx
-            a1 += fy
-            if artificial is not None:
-                pull = fx * dx + fy * dy
-                if z is not None:
-                    pull += fz * dz
-                f = shape_value(shape, q2 * iq) * inverse_w
-                f *= f
-                push = artificial * f * f * max(0.0, -pull) * iq * iq * ih2
-                b0 += push * dx
-                b1 += push * dy
-                if z is not None:
-                    b2 += push * dz
-        if artificial is not None:
-            a0 += b0
-            a1 += b1
-            if z is not None:
-                a2 += b2
-        if density is not None:
-            inverse = 1.0 / density[i]
-            a0 *= inverse
-            a1 *= inverse
-            if z is not None:
-                a2 *= inverse
-            if artificial is not None:
-                b0 *= inverse
-                b1 *= inverse
-                if z is not None:
-                    b2 *= inverse
-        ax[i] = a0 + body[0]
-        ay[i] = a1 + body[1]
-        if z is not None:
-            az[i] = a2 + body[2]
-        if artificial is not None:
-            bx[i] = b0
-            by[i] = b1
-            if z is not None:
-                bz[i] = b2
-        if nearest is not None:
-            nearest[i] = of_bits(least)

@@ -197,21 +197,9 @@ def _unrolled(laws, number, i0, i1, z, dt, correction, density_rate, stress_rate
             i0, i1, z, number, laws[0], dt, correction, density_rate, stress_rate, heat, wave, hoop, arrays, numbers
         )
         each_law(
-            laws[1:],
-            number + 1,
-            i0,
-            i1,
-            z,
-            dt,
-            correction,
-            density_rate,
-            stress_rate,
-            heat,
-            wave,
-            hoop,
-            arrays,
+            laws[1:], number + 1, i0, i1, z, dt, correction, density_rate, stress_rate, heat, wave, hoop, arrays,
             numbers,
-        )
+        )  # fmt: skip
 
     return each
 
@@ -245,9 +233,12 @@ def half_work(i0, i1, z, cx, bx, body_work, dt, arrays, numbers):
 def kick(i0, i1, z, cx, bx, body_work, duration, dt, arrays, numbers):
     """v += a duration; directions in the mask `fixed` (bits x y z) do not move, nor change driven velocities.
 
-    dt: the step that begins.
+    dt: the step that begins. Dynamic relaxation then takes its part, and the row `relaxed` has what it took: with v
+    before and r v after it, m (1 - r) v . ((1 + r) v - a dt) / 2, so that what the forces do, which is counted with the
+    velocities of after, and this close the balance as the leap-frog alone does.
     """
     u, v = arrays.u, arrays.v
+    relaxation = numbers.relaxation
     for i in range(i0, i1):
         fixed = arrays.fixed[i]
         if fixed & DRIVEN:
@@ -260,16 +251,20 @@ def kick(i0, i1, z, cx, bx, body_work, duration, dt, arrays, numbers):
             v[i] = 0.0
         u[i] += arrays.ax[i] * duration
         v[i] += arrays.ay[i] * duration
-        if numbers.relaxation != 1.0:
-            u[i] *= numbers.relaxation
-            v[i] *= numbers.relaxation
         if z is not None:
             if fixed & 4:
                 arrays.az[i] = 0.0
                 arrays.w[i] = 0.0
             arrays.w[i] += arrays.az[i] * duration
-            if numbers.relaxation != 1.0:
-                arrays.w[i] *= numbers.relaxation
+        if relaxation != 1.0:
+            power = u[i] * ((1.0 + relaxation) * u[i] - arrays.ax[i] * dt)
+            power += v[i] * ((1.0 + relaxation) * v[i] - arrays.ay[i] * dt)
+            u[i] *= relaxation
+            v[i] *= relaxation
+            if z is not None:
+                power += arrays.w[i] * ((1.0 + relaxation) * arrays.w[i] - arrays.az[i] * dt)
+                arrays.w[i] *= relaxation
+            arrays.relaxed[0, i] += 0.5 * arrays.mass[i] * (1.0 - relaxation) * power
     half_work(i0, i1, z, cx, bx, body_work, dt, arrays, numbers)
 
 

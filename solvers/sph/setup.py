@@ -70,6 +70,7 @@ def rows_of(p: Problem, contact: Contact, cures: Cures, *, local: bool) -> Rows:
         sleep=p.sleep > 0.0,
         birth=p.birth is not None,
         interface=_unequal(p),
+        relaxed=p.relaxation != 1.0,
         absent=p.birth is not None or any(plane.kind == LIMIT for plane in p.planes),
     )
 
@@ -90,9 +91,9 @@ def numbers_of(p: Problem, contact: Contact, shape: Shape, *, mirrors: bool) -> 
     normal = normaliser(shape, p.dimension)
     times, values = p.body_curve or (np.zeros(2), np.zeros((2, 3)))
     spacing = float(np.median(p.sections ** (1.0 / p.dimension) / p.h))
+    at_spacing = value_at(shape, spacing)  # zero of particles that do not reach each other
     wave = np.array([sound_speed(b.law, b.density, _first_energy(p, k)) for k, b in enumerate(p.bodies)])
     scale = normal / h ** (p.dimension + 2) if uniform_h(p) else normal
-    beside = value_at(shape, spacing)
     return Numbers(
         dimension=p.dimension,
         inverse_h2=1.0 / (h * h),
@@ -113,7 +114,7 @@ def numbers_of(p: Problem, contact: Contact, shape: Shape, *, mirrors: bool) -> 
         least_distance=IMAGE if mirrors else 0.0,
         wall=np.array([b.density if b.bearing else 0.0 for b in p.bodies]),
         kinematic_viscosity=np.array([getattr(b.law, "viscosity", 0.0) / b.density for b in p.bodies]),
-        inverse_w=1.0 / beside if beside > 0.0 else 0.0,  # too far apart to see each other
+        inverse_w=1.0 / at_spacing if at_spacing > 0.0 else 0.0,
         step_option=p.step_option,
         step_factor=p.step_factor,
         original=p.original,
@@ -178,7 +179,7 @@ def described(p: Problem, contact: Contact, cures: Cures, has: Rows, threads: in
         "pair viscosity": has.heat,
         "walls that bear their neighbours' stress": any(b.bearing for b in p.bodies),
         f"h option {p.h_option}": has.changing_h,
-        f"dynamic relaxation {p.relaxation:g}": p.relaxation != 1.0,
+        f"dynamic relaxation {p.relaxation:g}": has.relaxed,
         f"{len(p.planes)} boundary plane(s)": bool(p.planes),
         "base acceleration by curve": has.body_work,
         "births": has.birth,

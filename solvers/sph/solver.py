@@ -29,7 +29,6 @@ from .state import Arrays, State
 
 SKIN = 0.25  # of the largest h: the list's spare radius
 CHECKED = 50  # steps between looks at the energy balance, which the original's coupling does not keep
-STORED = ("contact_energy", "contact_dissipated", "artificial_energy")  # columns that stand at the end
 SMALL = 2000  # fewer particles run on one thread: a parallel region costs more than it saves
 
 Floats = NDArray[np.float64]
@@ -63,7 +62,8 @@ class Solver:
         self._slow = n if self._stiff is None else int(np.count_nonzero(~self._stiff[problem.body]))
         has = self._has = setup.rows_of(problem, self._contact, cures, local=self._stiff is not None)
         self._rows_apart = True if has.correction or has.hoop else None
-        self._state = State(n, problem.dimension, has)
+        own = not (self._uniform_h and self._uniform_mass) or self._mixed or has.correction
+        self._state = State(n, problem.dimension, has, packs=(self._plain, own and problem.dimension == 3))
         surface = self._contact.surface
         self.driven = Driven(self._state, n, surface) if has.driven or surface is not None else None
         self._mirrored = any(p.kind in (ghosts.SYMMETRY, ghosts.PERIODIC) for p in problem.planes)
@@ -349,12 +349,12 @@ class Solver:
         """One row of history.csv: energies, momentum, the contact force on the first material.
 
         `internal` is elastic and dissipated energy together, `dissipated` the part that plastic flow and viscosity
-        took; kinetic + internal + contact_energy + contact_dissipated + artificial_energy - external_work stays
-        constant.
+        took; kinetic + internal + contact_energy + contact_dissipated + artificial_energy + relaxation_dissipated -
+        external_work stays constant.
         """
         s, n = self._state, self.live
         energies = self.energies()
-        stored = {name: energies.pop(name) for name in STORED}
+        stored = {name: energies.pop(name) for name in measures.STORED}
         absent = energies.pop("absent")
         momentum = np.zeros(3)
         moving = s.fixed[:n] & DRIVEN == 0

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..gather import table
 from ..jit import kernel
 from ..neighbours import NeighbourList
 from ..threads import run, share
@@ -35,7 +36,8 @@ class Arrays(NamedTuple):
     stiff bodies with local steps, see `local`. hoop: r u, see `rings`. still, quiet, push: of sleeping, see `rest`;
     push (2 d, m): the speed that a sleeper was pushed to, and its acceleration when it fell asleep.
     interface (0 | 1, m): see `across.interface_speed`. impulse, thrust (d, m): of what is driven, see `driving`;
-    face_slip: friction on facets, see `facing`.
+    face_slip: friction on facets, see `facing`. relaxed (0 | 1, m): energy that dynamic relaxation took.
+    packed, beside (m, 8): see `packed`.
     """
 
     x: Any
@@ -112,6 +114,9 @@ class Arrays(NamedTuple):
     quiet: Any
     push: Any
     interface: Any
+    relaxed: Any
+    packed: Any
+    beside: Any
 
 
 class Numbers(NamedTuple):
@@ -174,7 +179,7 @@ class Rows:
     between bodies, normals; wall_slip: walls with friction; total-Lagrangian bodies; local steps; hoop stress of
     a body of revolution; sleep of what is at rest; birth of particles to come; absent: whether
     particles may be, which takes no row; interface: bodies much heavier and stiffer than their neighbours; driven
-    particles; face_slip: rows of friction on facets.
+    particles; face_slip: rows of friction on facets; relaxed: dynamic relaxation.
     """
 
     state: int = 0
@@ -201,18 +206,19 @@ class Rows:
     birth: bool = False
     absent: bool = False
     interface: bool = False
+    relaxed: bool = False
 
 
 _WHOLE = ("id", "material", "fixed")  # what is counted in whole numbers, beside the rows
 
 
 class State:
-    """Storage of the rows above in one array of (rows, n + room + 1), so that sorting moves everything at once.
+    """Storage of the rows above in one array of (rows, n + images + 1), so that sorting moves everything at once.
 
-    room: for images; the dummy is the last entry.
+    The dummy is the last entry, behind the images. packs: whether loops read the two tables of `packed`.
     """
 
-    def __init__(self, n: int, dimension: int, has: Rows, room: int = 0) -> None:
+    def __init__(self, n: int, dimension: int, has: Rows, *, packs: tuple[bool, bool]) -> None:
         solid = dimension == 3
         d = 3 if solid else 2  # a line runs as a plane with y = 0
         self.n = n
@@ -229,7 +235,7 @@ class State:
             "deformation": d * d if has.lagrangian else 0, "hourglass": HOURGLASS if has.lagrangian else 0,
             "held": 2 * d * has.local, "impulse": d * has.driven, "face_slip": has.face_slip,
             "still": int(has.sleep), "quiet": int(has.sleep), "push": 2 * d * has.sleep, "birth": int(has.birth),
-            "interface": int(has.interface),
+            "interface": int(has.interface), "relaxed": int(has.relaxed),
             "state": has.state,
             "gradient": d * d, "s": (d * d if has.correction or has.hoop else 6 if solid else 3), "nearest": 1,
             "c": d if has.contact else 0, "correction": (6 if solid else 3) if has.correction else 0,
@@ -246,10 +252,11 @@ class State:
         # (of sleepers nothing is made anew)
         self.lasting = at if has.sleep else self.slices["state"].stop
         self._rows = at
+        self._packs = packs
         self.id: NDArray[np.int64]
         self.material: NDArray[np.int64]
         self.fixed: NDArray[np.int64]
-        self._allocate(room)
+        self._allocate(0)
 
     def _allocate(self, room: int) -> None:
         self.dummy = self.n + room
@@ -257,6 +264,7 @@ class State:
         if width % 512 == 0:
             width += 8  # rows a multiple of 4 KiB apart would share the same cache sets
         self.numbers: Floats = np.zeros((self._rows, width))
+        self.packed, self.beside = (table(self.dummy + 1 if packs else 0) for packs in self._packs)
         self.id, self.material, self.fixed = (np.zeros(self.dummy + 1, np.int64) for _ in range(3))
 
     def make_room(self, room: int) -> None:
@@ -384,4 +392,7 @@ class State:
             quiet=self.row("quiet"),
             push=self.rows("push"),
             interface=self.rows("interface"),
+            relaxed=self.rows("relaxed"),
+            packed=self.packed,
+            beside=self.beside,
         )

@@ -18,6 +18,8 @@ import numpy as np
 from ..jit import kernel
 from ..threads import barrier, claim, share
 from . import across, bearing, cures, driving, facing, ghosts, lagrangian, nominal, pairs, rest, rings, slip, walls
+from .momentum import momentum
+from .packed import pack_forces, pack_motion
 from .particle import critical_step, drift, each_law, half_work, kick
 
 # entries of `progress`, the loop's own memory
@@ -42,12 +44,10 @@ def strain(
     arrays, numbers,
 ):  # fmt: skip
     """Velocity gradients of a range of particles, and the rates of diffusion, all with the old densities."""
-    u = arrays.u if hoop is None else hoop
     if plain is not None:
         pairs.velocity_gradient(
-            i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.x_half, arrays.y_half, solid, arrays.z_half,
-            u, arrays.v, arrays.w, arrays.volume, h, numbers.inverse_h2, numbers.scale, line, arrays.gradient,
-            correction,
+            i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.packed, solid, h, numbers.inverse_h2,
+            numbers.scale, line, arrays.gradient, correction,
         )  # fmt: skip
     if hoop is not None:
         rings.radial_strain(i0, i1, arrays)
@@ -82,9 +82,9 @@ def force(i0, i1, shape, z, h, mass, nearest, line, cx, contact, mixed, correcti
     if hoop is not None:
         body = rings.NO_FORCE
     if plain is not None:
-        pairs.momentum(
-            i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.x, arrays.y, z, arrays.s, weight, h,
-            numbers.inverse_h2, scale, line, body, arrays.ax, arrays.ay, arrays.az, nearest, density,
+        momentum(
+            i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.packed, arrays.beside, z, arrays.s, weight,
+            h, numbers.inverse_h2, scale, line, body, arrays.ax, arrays.ay, arrays.az, nearest, density,
             rows_apart, artificial, numbers.inverse_w, bx, arrays.by, arrays.bz,
         )  # fmt: skip
     if hoop is not None:
@@ -180,6 +180,7 @@ def advance(
                     g0, g1 = share(len(image_source), thread, threads)
                     rings.flow(offset + g0, offset + g1, hoop, arrays)
                     barrier(sync, threads)
+                pack_motion(thread, threads, sync, 0, solid, h, hoop, plain, arrays)
                 c = claim(sync, taken)
                 while c < chunks:
                     end = min(n, (c + 1) * chunk)
@@ -240,6 +241,7 @@ def advance(
                     thread, threads, sync, n, offset, z, shape, contact, friction, damping, last, image_source,
                     image_sign, arrays, numbers,
                 )  # fmt: skip
+            pack_forces(thread, threads, sync, 0, z, h, mass, mixed, rows_apart, plain, arrays)
             least = np.inf
             look = False
             if resting is not None:

@@ -45,7 +45,7 @@ def phases(problem: Problem) -> dict[str, float]:
     return {
         "deformation": nanoseconds(lambda: lagrangian.deformation(0, n, True, 1e-3, r, a), n),
         "law": nanoseconds(
-            lambda: particle.constitutive(0, n, a.z, 0, s._laws[0], 1e-12, None, None, None, None, None, a, k), n),
+            lambda: particle.constitutive(0, n, a.z, 0, s._laws[0], 1e-12, *[None] * 6, a, k), n),
         "nominal stress": nanoseconds(lambda: nominal_stress(0, n, a.z, r, a), n),
         "force": nanoseconds(lambda: lagrangian.internal_force(0, n, a.z, None, r, a, k), n),
         "critical step": nanoseconds(lambda: particle.critical_step(0, n, a.z, None, k, a), n),

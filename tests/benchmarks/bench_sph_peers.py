@@ -31,7 +31,7 @@ CURES = {
 }
 
 
-def blocks(cells: int, *, lagrangian: bool = False, cures: Cures | None = None) -> Problem:
+def blocks(cells: int, *, cures: Cures | None = None) -> Problem:
     """The scene, in mm, ms, kg and GPa as LAMMPS has it."""
     dx = 20.0 / cells
     grid = dx * (np.stack(np.meshgrid(*[np.arange(cells)] * 3, indexing="ij"), axis=-1).reshape(-1, 3) + 0.5)
@@ -44,8 +44,26 @@ def blocks(cells: int, *, lagrangian: bool = False, cures: Cures | None = None) 
     return Problem(
         dimension=3, x=x, v=v, mass=np.full(n, rho * dx**3), h=np.full(n, 1.3 * dx), density=np.full(n, rho),
         body=np.repeat([0, 1], half),
-        bodies=tuple(Body(i, "block", law, rho, 0.5, 2.0, lagrangian=lagrangian) for i in (1, 2)),
-        end_time=1e9, cures=cures or Cures(), **({"apart": True} if lagrangian else {}),
+        bodies=tuple(Body(i, "block", law, rho, 0.5, 2.0) for i in (1, 2)),
+        end_time=1e9, cures=cures or Cures(),
+    )  # fmt: skip
+
+
+def rings() -> Problem:
+    """Two elastic rings of 30 and 40 mm in plane strain meet at 10 m/s each; h = 1.5 spacings, 28 neighbours."""
+    dx, rho = 0.47, 1.2e-6
+    side = dx * (np.arange(-90, 91) + 0.5)
+    x = np.stack(np.meshgrid(side, side, [0.0], indexing="ij"), axis=-1).reshape(-1, 3)
+    x = x[(np.hypot(x[:, 0], x[:, 1]) > 30.0) & (np.hypot(x[:, 0], x[:, 1]) < 40.0)]
+    half, n = len(x), 2 * len(x)
+    v = np.zeros((n, 3))
+    v[:half, 0], v[half:, 0] = 10.0, -10.0
+    away = np.array([41.5, 0.0, 0.0])
+    law = Elastic.from_engineering(0.03, 0.3975)
+    return Problem(
+        dimension=2, x=np.concatenate([x - away, x + away]), v=v, mass=np.full(n, rho * dx**2),
+        h=np.full(n, 1.5 * dx), density=np.full(n, rho), body=np.repeat([0, 1], half),
+        bodies=tuple(Body(i, "ring", law, rho, 0.5, 2.0) for i in (1, 2)), end_time=1e9,
     )  # fmt: skip
 
 

@@ -222,6 +222,7 @@ def test_set_replaces_a_key_of_a_scene(tmp_path: Path) -> None:
     assert (result.history_units["time"], result.history_units["kinetic"]) == ("us", "Mbar cm^3/cm")  # per depth
     assert (result.history_units["contact_force_x"], result.dimension) == ("Mbar cm^2/cm", 2)
     assert result.history_units["contact_energy"] == result.history_units["kinetic"]
+    assert result.history_units["relaxation_dissipated"] == result.history_units["kinetic"]
     assert set(result.manifest["inputs"]) == {str(scene), str(tmp_path / "impact.mcm")}
 
 

@@ -91,6 +91,12 @@ def test_a_particle_alone_in_space_flies_on() -> None:
         assert np.allclose(alone.frame().particles["position"][0, :2], [50.5, 49.0], atol=1e-12)
 
 
+def test_volumes_wider_than_the_kernel_reaches_are_no_division_by_zero() -> None:
+    """Masses of a deck in another unit: the particles' spacing by volume is ten times the kernel's radius."""
+    x = lattice((6, 6), (0.0, 0.0))
+    assert Solver(one_body(x, mass=np.full(len(x), 4.0))).dt > 0.0
+
+
 def test_impact_at_three_times_the_speed_of_sound_is_survived_or_named() -> None:
     """In kernel contact: to its end with momentum and balance 5 %, or `Diverged`; never what is not a number."""
     speed = 1.5 * sound_speed(ELASTIC, 1.0)

@@ -172,7 +172,7 @@ def test_held_steel_limits_the_step_only_by_its_stress(kind: str) -> None:
     contact = contact_of(p, shape_of(p.kernel, 2))
     rows = setup.rows_of(p, contact, p.cures, local=False)
     n = len(p.x)
-    state = State(n, 2, rows)
+    state = State(n, 2, rows, packs=(False, False))
     setup.fill(state, p, numbers, rows, shape_of(p.kernel, 2))
     state.rows("nearest")[:] = SPACING**2
     arrays = state.arrays(NeighbourList(n), NeighbourList(n), np.zeros((1, 8)))

@@ -1,0 +1,85 @@
+"""What the pair loops read of a neighbour, packed into its row of a table: a cache line (see `gather`).
+
+Packed anew before each of the two loops, of all that may stand in a list: particles, images, the dummy.
+
+    motion, in the plane: x y u v volume h           in space: x y z u v w volume h
+    forces, in the plane: x y weight h, 3 or 4 of s  in space: x y, 6 of s; z stays where it is
+    beside, in space, where one of them is there: weight h, the other 3 of s
+"""
+
+from __future__ import annotations
+
+from ..jit import kernel
+from ..threads import barrier, share
+
+STRESS = 2  # where s begins in space
+STRESS_PLANE = 4
+REST = 2  # where the rest of it begins
+
+
+@kernel
+def pack_motion(thread, threads, sync, start, solid, h, hoop, plain, arrays):
+    """What `velocity_gradient` reads, of all entries from `start` on. The threads meet after it.
+
+    solid: None in the plane; h: None where all are equal; hoop: None, or r u of rings; plain: None where no loop reads.
+    """
+    if plain is None:
+        return
+    u = arrays.u if hoop is None else hoop
+    packed = arrays.packed
+    a, b = share(len(arrays.x) - start, thread, threads)
+    for i in range(start + a, start + b):
+        packed[i, 0] = arrays.x_half[i]
+        packed[i, 1] = arrays.y_half[i]
+        if solid is not None:
+            packed[i, 2] = arrays.z_half[i]
+            packed[i, 3] = u[i]
+            packed[i, 4] = arrays.v[i]
+            packed[i, 5] = arrays.w[i]
+            packed[i, 6] = arrays.volume[i]
+            if h is not None:
+                packed[i, 7] = h[i]
+        else:
+            packed[i, 2] = u[i]
+            packed[i, 3] = arrays.v[i]
+            packed[i, 4] = arrays.volume[i]
+            if h is not None:
+                packed[i, 5] = h[i]
+    barrier(sync, threads)
+
+
+@kernel
+def pack_forces(thread, threads, sync, start, z, h, mass, mixed, corrected, plain, arrays):
+    """What `momentum` reads, of all entries from `start` on. The threads meet after it.
+
+    z: None in the plane; mass, h: None where all are equal; mixed: None, or volumes weigh in place of masses;
+    corrected: None, or s has all its components.
+    """
+    if plain is None:
+        return
+    weight = mass if mixed is None else arrays.volume
+    packed, beside, s = arrays.packed, arrays.beside, arrays.s
+    a, b = share(len(arrays.x) - start, thread, threads)
+    for i in range(start + a, start + b):
+        packed[i, 0] = arrays.x[i]
+        packed[i, 1] = arrays.y[i]
+        if z is not None:
+            for c in range(6):
+                packed[i, STRESS + c] = s[c, i]
+            if weight is not None:
+                beside[i, 0] = weight[i]
+            if h is not None:
+                beside[i, 1] = h[i]
+            if corrected is not None:
+                for c in range(3):
+                    beside[i, REST + c] = s[6 + c, i]
+        else:
+            if weight is not None:
+                packed[i, 2] = weight[i]
+            if h is not None:
+                packed[i, 3] = h[i]
+            if corrected is not None:
+                packed[i, 7] = s[3, i]
+            for c in range(3):
+                packed[i, STRESS_PLANE + c] = s[c, i]
+    barrier(sync, threads)
