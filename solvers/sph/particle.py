@@ -242,6 +242,25 @@ def half_work(i0, i1, z, cx, bx, body_work, dt, arrays, numbers):
 
 
 @kernel
+def _relax(i, z, duration, arrays, numbers):
+    """Dynamic relaxation of velocities that have had their kick; what it takes, at the mean velocity, becomes heat."""
+    lost = 1.0 - numbers.relaxation
+    kept = 1.0 + numbers.relaxation
+    u = arrays.u[i]
+    v = arrays.v[i]
+    taken = u * (kept * u - arrays.ax[i] * duration) + v * (kept * v - arrays.ay[i] * duration)
+    arrays.u[i] = numbers.relaxation * u
+    arrays.v[i] = numbers.relaxation * v
+    if z is not None:
+        w = arrays.w[i]
+        taken += w * (kept * w - arrays.az[i] * duration)
+        arrays.w[i] = numbers.relaxation * w
+    if not numbers.original:
+        arrays.energy[i] += 0.5 * lost * taken
+        arrays.dissipated[i] += 0.5 * lost * taken
+
+
+@kernel
 def kick(i0, i1, z, cx, bx, body_work, duration, dt, arrays, numbers):
     """v += a duration; directions in the mask `fixed` (bits x y z) do not move, nor change driven velocities.
 
@@ -260,16 +279,13 @@ def kick(i0, i1, z, cx, bx, body_work, duration, dt, arrays, numbers):
             v[i] = 0.0
         u[i] += arrays.ax[i] * duration
         v[i] += arrays.ay[i] * duration
-        if numbers.relaxation != 1.0:
-            u[i] *= numbers.relaxation
-            v[i] *= numbers.relaxation
         if z is not None:
             if fixed & 4:
                 arrays.az[i] = 0.0
                 arrays.w[i] = 0.0
             arrays.w[i] += arrays.az[i] * duration
-            if numbers.relaxation != 1.0:
-                arrays.w[i] *= numbers.relaxation
+        if numbers.relaxation != 1.0:
+            _relax(i, z, duration, arrays, numbers)
     half_work(i0, i1, z, cx, bx, body_work, dt, arrays, numbers)
 
 
