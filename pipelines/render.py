@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,6 +21,7 @@ from zrno.pipelines.view import LEAST_PIXELS, MOST_PIXELS, Extent, axes, extent,
 from zrno.translators.text import Fault, InputError
 
 _RATE = 25  # pictures a second
+_TOUCHING = {1: 1.0, 2: math.sqrt(math.pi) / 2.0, 3: math.cbrt(math.pi / 6.0)}  # half a cell's edge over its radius
 
 
 def render(
@@ -34,10 +36,11 @@ def render(
     """Draw the particles and elements of a result folder, coloured by a field; returns the files written.
 
     output: FILE.png (numbered where time is "all"), FILE.mp4 or FILE.ogv (a film of all frames); without it FIELD.png
-    in the folder. field: an array (of particles, nodes or elements), a component of one (`velocity_x`), or the
-    magnitude of a vector. time: "last",
-    "all", or a simulated time, of which the nearest frame is drawn. view: iso (a flat scene is looked at straight), x,
-    y, z, -x, -y, -z. size: width and height in pixels. Camera and colours are the same for all frames.
+    in the folder. Particles are spheres of their volume; beside elements they are balls of half their spacing, as contact
+    sees them: they touch what they lie on. field: an array (of particles, nodes or elements), a component of one
+    (`velocity_x`), or the magnitude of a vector. time: "last", "all", or a simulated time, of which the nearest frame
+    is drawn. view: iso (a flat scene is looked at straight), x, y, z, -x, -y, -z, or a direction from the scene towards
+    the camera ("1,-2,0.5"). size: width and height in pixels. Camera and colours are the same for all frames.
 
     Raises InputError or ValueError for what is not there, Missing where EGL or ffmpeg is not installed.
     """
@@ -127,6 +130,8 @@ def _shown(result: Result, index: int, field: str) -> _Shown:
             mesh = data
         else:
             radius = np.asarray(data.point_data["radius"])
+            if "elements" in result.whole:
+                radius = radius * _TOUCHING[result.dimension]
             reach = float(radius.max(initial=0.0))
             cloud = Cloud(points[-1], radius, np.full(len(radius), np.nan) if found is None else found)
     if not values:

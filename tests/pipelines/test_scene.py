@@ -128,7 +128,8 @@ def test_the_whole_scene_is_read(tmp_path: Path) -> None:
         (
             "view: iso",
             "view: up",
-            "scene.yaml:8:47: error: render.0.view: is no view (up); expected one of iso, x, y, z, -x, -y, -z",
+            "scene.yaml:8:47: error: render.0.view: is no view (up); expected one of iso, x, y, z, -x, -y, -z, "
+            "or a direction as 1,-2,0.5",
         ),
         (
             "reference: plate.yaml",
