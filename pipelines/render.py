@@ -36,11 +36,11 @@ def render(
     """Draw the particles and elements of a result folder, coloured by a field; returns the files written.
 
     output: FILE.png (numbered where time is "all"), FILE.mp4 or FILE.ogv (a film of all frames); without it FIELD.png
-    in the folder. Particles are spheres of their volume; beside elements they are balls of half their spacing, as contact
-    sees them: they touch what they lie on. field: an array (of particles, nodes or elements), a component of one
-    (`velocity_x`), or the magnitude of a vector. time: "last", "all", or a simulated time, of which the nearest frame
-    is drawn. view: iso (a flat scene is looked at straight), x, y, z, -x, -y, -z, or a direction from the scene towards
-    the camera ("1,-2,0.5"). size: width and height in pixels. Camera and colours are the same for all frames.
+    in the folder. Particles are spheres of their volume; beside elements they are balls of half their spacing, as
+    contact sees them: they touch what they lie on. field: an array (of particles, nodes or elements), a component of
+    one (`velocity_x`), or the magnitude of a vector. time: "last", "all", or a simulated time, of which the nearest
+    frame is drawn. view: iso (a flat scene is looked at straight), x, y, z, -x, -y, -z, or a direction from the scene
+    towards the camera ("1,-2,0.5"). size: width and height in pixels. Camera and colours are the same for all frames.
 
     Raises InputError or ValueError for what is not there, Missing where EGL or ffmpeg is not installed.
     """
