@@ -237,6 +237,9 @@ def render(
         str, typer.Option(metavar="VIEW", help="iso, x, y, z, -x, -y, -z, or towards the camera: 1,-2,0.5.")
     ] = "iso",
     size: Annotated[str, typer.Option(metavar="WxH", help="Pixels.")] = "1280x720",
+    of: Annotated[
+        str | None, typer.Option(metavar="particles|elements", help="What has the colours; else all with the field.")
+    ] = None,
     json: Json = False,
     verbose: Verbose = False,
     quiet: Quiet = False,
@@ -246,7 +249,7 @@ def render(
     with console.command(typer.Exit, json=json, verbose=verbose, quiet=quiet) as out:
         from zrno.pipelines.render import render as run_render
 
-        files = run_render(directory, output=output, field=field, time=time, view=view, size=pixels)
+        files = run_render(directory, output=output, field=field, time=time, view=view, size=pixels, of=of)
         out.answer({"files": [str(f) for f in files]}, "\n".join(map(str, files)))
 
 

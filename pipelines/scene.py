@@ -67,9 +67,10 @@ class Output(Section):
 
 
 class Picture(Section):
-    """A picture to draw after the run."""
+    """A picture to draw after the run. of: what has the colours, else all that has the field."""
 
     field: str = "von_mises"
+    of: Literal["particles", "elements"] | None = None
     time: float | str = "last"
     view: str = "iso"
     size: tuple[Pixels, Pixels] = (1280, 720)

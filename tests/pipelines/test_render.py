@@ -230,3 +230,11 @@ def test_beside_elements_particles_touch_and_do_not_pass(
     assert np.ptp(below[60:130, 105:175], axis=2).min() > 0.2  # the plate's colours hide it
     above = pixels(render(where, field="warmth", view="z", size=SIZE)[0])
     assert np.ptp(above[90:102, 132:146], axis=2).max() < 0.1  # the ball, grey
+
+
+def test_colours_of_one_alone(folder: Path) -> None:
+    """The scale is of what is coloured; what is not there cannot be."""
+    files = render(folder, of="particles", size=SIZE)
+    assert files == [folder / "von_mises_particles.png"]
+    with pytest.raises(ValueError, match="no elements to colour; there are: particles"):
+        render(folder, of="elements", size=SIZE)
