@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -17,10 +16,13 @@ WEIGHT = 2.099e-3 * GRAVITY * 36.0 * 36.0 * 192.0  # of the quarter
 CELL = 7.2
 
 
-def come_to_rest(folder: Path, scene: str, **options: Any) -> Cloud:
+def come_to_rest(folder: Path, scene: str, spacing: float = CELL) -> Cloud:
     """The grain at 1 s: none is lost, none is in the plate, and what stands below bears all of it."""
     copy("sand_box", folder)
-    result = run([folder / scene], output=folder / "out", options={"render": [], **options})
+    text = (folder / scene).read_text(encoding="utf-8")
+    assert f"spacing: {CELL}" in text
+    (folder / scene).write_text(text.replace(f"spacing: {CELL}", f"spacing: {spacing:g}"), encoding="utf-8")
+    result = run([folder / scene], output=folder / "out", options={"render": []})
     assert result["status"] == "done"
     assert result["energy"]["balance_error"] < 0.02
     found = load(folder / "out")
@@ -56,7 +58,7 @@ def test_sand_runs_out_as_far_as_in_experiments(tmp_path: Path) -> None:
     wanted = alike * (1.0 + 1.6 * np.sqrt(192.0 / alike))
     wrong = []
     for spacing in (9.0, CELL, 6.0):
-        grain = come_to_rest(tmp_path / f"{spacing:g}", "scene.yaml", spacing=spacing)
+        grain = come_to_rest(tmp_path / f"{spacing:g}", "scene.yaml", spacing)
         wrong.append(radius(grain, axis="z", heap=True, fraction=0.999) / wanted - 1.0)
         assert radius(grain, axis="z", heap=True, fraction=0.99) == pytest.approx(wanted, rel=0.1)
         assert 10.0 < slope_of(grain, spacing) < 30.0
