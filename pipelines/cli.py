@@ -233,18 +233,23 @@ def render(
     output: Annotated[Path | None, typer.Option("-o", "--output", metavar="FILE", help="FILE.png or FILE.mp4.")] = None,
     field: Annotated[str, typer.Option(metavar="NAME", help="An array, or a component: velocity_x.")] = "von_mises",
     time: Annotated[str, typer.Option(metavar="T|last|all", help="A simulated time, the last, or all.")] = "last",
-    view: Annotated[str, typer.Option(metavar="VIEW", help="iso, x, y, z, -x, -y, -z.")] = "iso",
+    view: Annotated[
+        str, typer.Option(metavar="VIEW", help="iso, x, y, z, -x, -y, -z, or towards the camera: 1,-2,0.5.")
+    ] = "iso",
     size: Annotated[str, typer.Option(metavar="WxH", help="Pixels.")] = "1280x720",
+    of: Annotated[
+        str | None, typer.Option(metavar="particles|elements", help="What has the colours; else all with the field.")
+    ] = None,
     json: Json = False,
     verbose: Verbose = False,
     quiet: Quiet = False,
 ) -> None:
-    """Draw the particles of a result folder, coloured by a field."""
+    """Draw the particles and elements of a result folder, coloured by a field."""
     pixels = _size(size)
     with console.command(typer.Exit, json=json, verbose=verbose, quiet=quiet) as out:
         from zrno.pipelines.render import render as run_render
 
-        files = run_render(directory, output=output, field=field, time=time, view=view, size=pixels)
+        files = run_render(directory, output=output, field=field, time=time, view=view, size=pixels, of=of)
         out.answer({"files": [str(f) for f in files]}, "\n".join(map(str, files)))
 
 

@@ -18,6 +18,7 @@ _PANELS = {  # a quantity that stands for several columns: heading, columns
     "energy": ("energy", ("kinetic", "internal", "dissipated", "external_work")),
     "momentum": ("momentum", ("momentum_x", "momentum_y", "momentum_z")),
     "contact_force": ("contact force", ("contact_force_x", "contact_force_y", "contact_force_z")),
+    "structure_force": ("force on the structure", ("structure_force_x", "structure_force_y", "structure_force_z")),
 }
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")  # Okabe and Ito: told apart by colour-blind eyes, too
 _FORMATS = (".png", ".pdf", ".svg")
@@ -27,8 +28,8 @@ def plot(directory: Path | str, *, output: Path | str | None = None, quantities:
     """Draw histories, one panel a quantity; returns the file written.
 
     output: FILE.png, .pdf or .svg; without it history.png in the folder. quantities: columns of history.csv, or energy,
-    momentum and contact_force for their parts together (the default). Raises InputError or ValueError for what is not
-    there.
+    momentum, contact_force and structure_force for their parts together (by default those of them that are there).
+    Raises InputError or ValueError for what is not there.
     """
     result = load(directory)
     history = result.history
@@ -37,7 +38,8 @@ def plot(directory: Path | str, *, output: Path | str | None = None, quantities:
     target = Path(output) if output is not None else result.directory / "history.png"
     if target.suffix not in _FORMATS:
         raise ValueError(f"{target} is not a plot: give {', '.join(_FORMATS)}")
-    panels = [_panel(name, history) for name in quantities or _PANELS]
+    there = [name for name, (_, columns) in _PANELS.items() if any(column in history for column in columns)]
+    panels = [_panel(name, history) for name in quantities or there or _PANELS]
     target.parent.mkdir(parents=True, exist_ok=True)
     _draw(target, panels, result)
     return target

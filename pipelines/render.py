@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,6 +21,7 @@ from zrno.pipelines.view import LEAST_PIXELS, MOST_PIXELS, Extent, axes, extent,
 from zrno.translators.text import Fault, InputError
 
 _RATE = 25  # pictures a second
+_TOUCHING = {1: 1.0, 2: math.sqrt(math.pi) / 2.0, 3: math.cbrt(math.pi / 6.0)}  # half a cell's edge over its radius
 
 
 def render(
@@ -30,14 +32,18 @@ def render(
     time: float | str = "last",
     view: str = "iso",
     size: tuple[int, int] = (1280, 720),
+    of: str | None = None,
 ) -> list[Path]:
     """Draw the particles and elements of a result folder, coloured by a field; returns the files written.
 
     output: FILE.png (numbered where time is "all"), FILE.mp4 or FILE.ogv (a film of all frames); without it FIELD.png
-    in the folder. field: an array (of particles, nodes or elements), a component of one (`velocity_x`), or the
-    magnitude of a vector. time: "last",
-    "all", or a simulated time, of which the nearest frame is drawn. view: iso (a flat scene is looked at straight), x,
-    y, z, -x, -y, -z. size: width and height in pixels. Camera and colours are the same for all frames.
+    in the folder. Particles are spheres of their volume; beside elements they are balls of half their spacing, as
+    contact sees them: they touch what they lie on. field: an array (of particles, nodes or elements), a component of
+    one (`velocity_x`), or the magnitude of a vector. time: "last", "all", or a simulated time, of which the nearest
+    frame is drawn. view: iso (a flat scene is looked at straight), x, y, z, -x, -y, -z, or a direction from the scene
+    towards the camera ("1,-2,0.5"). size: width and height in pixels. of: particles or elements,
+    where the other's values of the same field shall not stretch the scale; the other is grey. Camera and colours are
+    the same for all frames.
 
     Raises InputError or ValueError for what is not there, Missing where EGL or ffmpeg is not installed.
     """
@@ -45,8 +51,10 @@ def render(
     if not result.whole or not len(result.times):
         expected = "particles.pvd or elements.pvd"
         raise InputError([Fault(str(directory), 1, 1, "no frames in this folder", expected=expected)])
+    if of is not None and of not in result.whole:
+        raise ValueError(f"no {of} to colour; there are: {', '.join(result.whole)}")
     chosen = _frames(result.times, time)
-    target = Path(output) if output is not None else result.directory / _name(field, time, view)
+    target = Path(output) if output is not None else result.directory / _name(field, time, view, of)
     if target.suffix not in (".png", *movie.SUFFIXES):
         raise ValueError(f"{target} is neither a picture nor a film: give .png, {' or '.join(movie.SUFFIXES)}")
     if min(size) < LEAST_PIXELS or max(size) > MOST_PIXELS:
@@ -58,7 +66,7 @@ def render(
     egl.require()
     target.parent.mkdir(parents=True, exist_ok=True)
     frames = range(len(result.times)) if film else chosen
-    pictures = _pictures(result, frames, field, view, size)
+    pictures = _pictures(result, frames, field, view, size, of)
     if film:
         movie.write(target, pictures, rate=_RATE)
         return [target]
@@ -68,9 +76,9 @@ def render(
     return files
 
 
-def _name(field: str, time: float | str, view: str) -> str:
+def _name(field: str, time: float | str, view: str, of: str | None) -> str:
     when = "" if time in ("last", "all") else f"_t{float(time):g}"
-    return f"{field}{'' if view == 'iso' else '_' + view}{when}.png"
+    return f"{field}{'_' + of if of else ''}{'' if view == 'iso' else '_' + view}{when}.png"
 
 
 def _frames(times: NDArray[np.float64], time: float | str) -> Sequence[int]:
@@ -100,8 +108,8 @@ class _Shown:
     reach: float
 
 
-def _shown(result: Result, index: int, field: str) -> _Shown:
-    """A frame with its field: of particles, of nodes or of elements; what does not have it is drawn grey.
+def _shown(result: Result, index: int, field: str, of: str | None) -> _Shown:
+    """A frame with its field: of particles, of nodes or of elements; what does not have it, or is not `of`, is grey.
 
     Raises ValueError where nothing has it.
     """
@@ -110,7 +118,9 @@ def _shown(result: Result, index: int, field: str) -> _Shown:
     for name in result.whole:
         data = result.mesh(name, index)
         points.append(np.asarray(data.points))
-        kinds = (data.point_data, data.cell_data) if name == "elements" else (data.point_data,)
+        kinds = [data.point_data, data.cell_data] if name == "elements" else [data.point_data]
+        if of not in (None, name):
+            kinds = []
         found = None
         for arrays in kinds:
             of_kind = {key: np.asarray(arrays[key]) for key in arrays}
@@ -127,6 +137,8 @@ def _shown(result: Result, index: int, field: str) -> _Shown:
             mesh = data
         else:
             radius = np.asarray(data.point_data["radius"])
+            if "elements" in result.whole:
+                radius = radius * _TOUCHING[result.dimension]
             reach = float(radius.max(initial=0.0))
             cloud = Cloud(points[-1], radius, np.full(len(radius), np.nan) if found is None else found)
     if not values:
@@ -135,16 +147,16 @@ def _shown(result: Result, index: int, field: str) -> _Shown:
 
 
 def _pictures(
-    result: Result, frames: Sequence[int], field: str, view: str, size: tuple[int, int]
+    result: Result, frames: Sequence[int], field: str, view: str, size: tuple[int, int], of: str | None
 ) -> Iterator[NDArray[np.uint8]]:
     """Each frame's picture; the first pass over the frames finds the camera and the colours that fit all."""
-    first = _shown(result, frames[0], field)
+    first = _shown(result, frames[0], field, of)
     spread = np.ptp(first.points, axis=0).astype(float)
     along = axes(view, spread)
     box = Extent(np.full(3, np.inf), np.full(3, -np.inf))
     least, most, count = np.inf, -np.inf, 0
     for i in frames:
-        shown = first if i == frames[0] else _shown(result, i, field)
+        shown = first if i == frames[0] else _shown(result, i, field, of)
         finite = shown.values[np.isfinite(shown.values)]
         if len(finite):
             least, most = min(least, float(finite.min())), max(most, float(finite.max()))
@@ -157,7 +169,7 @@ def _pictures(
     stage = Stage(size, along, box, scale, title=result.title, flat=is_flat(spread), fine=count * len(frames) <= FINE)
     try:
         for i in frames:
-            shown = _shown(result, i, field)
+            shown = _shown(result, i, field, of)
             caption = f"t = {result.times[i]:.4g} {when}".rstrip()
             yield stage.draw(caption, shown.cloud, shown.mesh)
     finally:

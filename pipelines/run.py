@@ -279,7 +279,7 @@ def _pictures(scene: Scene | None, directory: Path, warnings: list[str]) -> list
         from zrno.pipelines.render import render
 
         try:
-            files = render(directory, field=picture.field, time=picture.time, view=picture.view, size=picture.size)
+            files = render(directory, **picture.model_dump())
             drawn += [str(file) for file in files]
         except (Missing, ValueError) as error:
             warnings.append(f"render.{i} is not drawn: {error}")

@@ -17,7 +17,7 @@ from zrno.pipelines.method import Sph
 from zrno.pipelines.sections import Positive, Section, wrong
 from zrno.pipelines.study_scene import Study
 from zrno.pipelines.units import SYSTEMS, Units
-from zrno.pipelines.view import LEAST_PIXELS, MOST_PIXELS, VIEWS
+from zrno.pipelines.view import LEAST_PIXELS, MOST_PIXELS, VIEWS, is_view
 from zrno.translators import settings as analysis
 from zrno.translators import yaml_marks
 from zrno.translators.text import Fault, Faults, InputError
@@ -67,9 +67,10 @@ class Output(Section):
 
 
 class Picture(Section):
-    """A picture to draw after the run."""
+    """A picture to draw after the run. of: what has the colours, else all that has the field."""
 
     field: str = "von_mises"
+    of: Literal["particles", "elements"] | None = None
     time: float | str = "last"
     view: str = "iso"
     size: tuple[Pixels, Pixels] = (1280, 720)
@@ -84,8 +85,8 @@ class Picture(Section):
     @field_validator("view")
     @classmethod
     def _known_view(cls, value: str) -> str:
-        if value not in VIEWS:
-            raise wrong("is no view", "one of " + ", ".join(VIEWS))
+        if not is_view(value):
+            raise wrong("is no view", "one of " + ", ".join(VIEWS) + ", or a direction as 1,-2,0.5")
         return value
 
 

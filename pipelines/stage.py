@@ -1,4 +1,4 @@
-"""The picture of particles (spheres of true radius) and elements: colour bar, title and time; drawn off screen."""
+"""The picture of particles (spheres) and elements: colour bar, title and time; drawn off screen."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ _EDGES = 20_000  # elements up to which their edges are drawn
 
 FINE = 2_000_000  # particles drawn in all up to which spheres are drawn twice as fine and averaged: smooth edges
 _INK = "#222222"
+_GREY = "#b8bcc4"  # of what does not have the field
 _HEAD = 0.085  # height of the line with title and time, as a fraction of the picture
 _BAR_RIGHT = 0.13  # width of the colour bar with its numbers, beside the scene
 _BAR_BELOW = 0.17  # height of the colour bar with its numbers, below a scene that is wide
@@ -90,7 +91,7 @@ class Stage:
         self._mapper.SetScaleArray("radius")
         self._mapper.SetScalarModeToUsePointFieldData()
         self._mapper.SelectColorArray("shown")
-        self._table = pyvista.LookupTable(scale.cmap, n_values=1024)
+        self._table = pyvista.LookupTable(scale.cmap, n_values=1024, nan_color=_GREY)
         self._table.scalar_range = scale.limits
         self._light = (1.0, 0.0) if flat else (0.35, 0.75)
         self._mapper.SetLookupTable(self._table)
@@ -141,7 +142,7 @@ class Stage:
             scalars="shown" if coloured else None,
             cmap=self._table,
             clim=self._scale.limits,
-            color=None if coloured else "#b8bcc4",
+            color=None if coloured else _GREY,
             show_scalar_bar=False,
             show_edges=mesh.n_cells <= _EDGES,
             edge_color=_INK,

@@ -26,21 +26,24 @@ class Units:
         per = {3: "", 2: f"/{self.length}", 1: f"/{self.length}^2"}[dimension]
         speed = f"{self.length}/{self.time}"
         momentum = f"{self.mass}{per} {speed}"
+        force = f"{self.force}{per}"
         energies = (
             "kinetic", "internal", "dissipated", "external_work", "contact_energy", "contact_dissipated",
             "artificial_energy", "relaxation_dissipated", "absent_energy", "interface_energy",
         )  # fmt: skip
+        stresses = ("pressure", "stress", "stress_top", "stress_bottom", "von_mises", "contact_pressure")
+        lengths = ("position", "displacement", "max_displacement", "radius", "thickness")
         return {
-            **dict.fromkeys(("time", "dt"), self.time),
-            **dict.fromkeys(("position", "displacement", "radius"), self.length),
+            **dict.fromkeys(("time", "dt", "particle_dt"), self.time),
+            **dict.fromkeys(lengths, self.length),
             "velocity": speed,
             "density": f"{self.mass}/{self.length}^3",
             "mass": f"{self.mass}{per}",
-            **dict.fromkeys(("pressure", "stress", "von_mises", "contact_pressure"), self.stress),
+            **dict.fromkeys(stresses, self.stress),
             **dict.fromkeys(energies, f"{self.energy}{per}"),
-            **{f"momentum_{axis}": momentum for axis in "xyz"},
-            "contact_force": f"{self.force}{per}",
-            **{f"contact_force_{axis}": f"{self.force}{per}" for axis in "xyz"},
+            **{f"{name}_{axis}": momentum for name in ("momentum", "pending_impulse") for axis in "xyz"},
+            **dict.fromkeys(("contact_force", "reaction"), force),
+            **{f"{name}_{axis}": force for name in ("contact_force", "structure_force", "reaction") for axis in "xyz"},
         }
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -42,20 +43,40 @@ def is_flat(spread: Vector) -> bool:
     return bool(spread[2] <= 1e-6 * spread.max())
 
 
+def _direction(view: str) -> list[float]:
+    """The numbers of a view that is a direction, from the scene towards the camera; none where it is not one."""
+    try:
+        found = [float(part) for part in view.split(",")]
+    except ValueError:
+        return []
+    size = math.hypot(*found)
+    return found if len(found) == 3 and 0.0 < size < math.inf else []
+
+
+def is_view(view: str) -> bool:
+    """Whether it is a name or a direction (three numbers with commas, from the scene towards the camera)."""
+    return view in VIEWS or bool(_direction(view))
+
+
 def axes(view: str, spread: Vector) -> Axes:
-    """The axes of a named view: x (seen from +x), y (from -y, so that x runs right), z (from +z), -x .., or iso.
+    """The axes of a view: x (seen from +x), y (from -y, so that x runs right), z (from +z), -x .., iso, or a direction.
 
     spread: extent of the points along x, y, z; iso of a flat scene looks straight at it. Raises ValueError for a view
     that is not one.
     """
-    if view not in VIEWS:
-        raise ValueError(f"no view {view}; there are: {', '.join(VIEWS)}")
+    if not is_view(view):
+        raise ValueError(f"no view {view}; there are: {', '.join(VIEWS)}, or a direction as 1,-2,0.5")
     if view == "iso" and is_flat(spread):
         view = "z"
     name = view.removeprefix("-")
-    towards = np.array(_TOWARDS_CAMERA[name], float) * (-1 if view.startswith("-") else 1)
+    if view in VIEWS:
+        towards, up = np.array(_TOWARDS_CAMERA[name], float) * (-1 if view.startswith("-") else 1), _UP[name]
+    else:
+        towards, up = np.array(_direction(view)), (0, 0, 1)
+        if np.hypot(*towards[:2]) < 1e-6 * abs(towards[2]):
+            up = _UP["z"]
     towards /= np.linalg.norm(towards)
-    right = np.cross(_UP[name], towards)
+    right = np.cross(up, towards)
     right /= np.linalg.norm(right)
     return Axes(right, np.cross(towards, right), towards)
 

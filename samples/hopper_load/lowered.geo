@@ -1,8 +1,8 @@
-// The silo with a floor of its own, which may sink between walls that reach below it. Lengths in mm.
-DefineConstant[ half = {48.5, Name "half"} ];
-DefineConstant[ height = {260, Name "height"} ];
-DefineConstant[ n = {8, Name "n"} ];              // shells over half a side
-DefineConstant[ m = {27, Name "m"} ];             // and over the height
+// A quarter of a silo whose floor may sink between walls that reach below it, 64 x 64 mm between its faces. Lengths in mm.
+DefineConstant[ half = {32.5, Name "half"} ];     // to the mid-surfaces of the walls
+DefineConstant[ height = {278, Name "height"} ];
+DefineConstant[ n = {4, Name "n"} ];              // shells over half a side
+DefineConstant[ m = {18, Name "m"} ];             // and over the height
 
 Point(1) = {0, 0, 0};
 out[] = Extrude {half, 0, 0} { Point{1}; Layers{n}; };

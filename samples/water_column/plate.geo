@@ -2,8 +2,8 @@
 
 DefineConstant[ length = {1, Name "length"} ];
 DefineConstant[ thickness = {0.05, Name "thickness"} ];
-DefineConstant[ along = {40, Name "along"} ];      // elements
-DefineConstant[ across = {4, Name "across"} ];
+DefineConstant[ along = {80, Name "along"} ];      // elements
+DefineConstant[ across = {8, Name "across"} ];
 
 Point(1) = {0, -thickness, 0};
 Point(2) = {length, -thickness, 0};

@@ -3,7 +3,7 @@
 DefineConstant[ length = {1, Name "length"} ];
 DefineConstant[ width = {0.4, Name "width"} ];
 DefineConstant[ thickness = {0.05, Name "thickness"} ];
-DefineConstant[ along = {40, Name "along"} ];      // elements
+DefineConstant[ along = {80, Name "along"} ];      // elements
 
 Point(1) = {0, 0, -thickness / 2};
 Point(2) = {length, 0, -thickness / 2};

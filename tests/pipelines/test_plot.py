@@ -35,6 +35,18 @@ def test_default_panels_with_labels_and_units(folder: Path) -> None:
         assert f">{words}<" in text, words
 
 
+def test_default_panels_are_those_that_are_there(folder: Path) -> None:
+    """A structure has no force of contact; with grain on it there is one that it feels."""
+    history = folder / "history.csv"
+    rows = history.read_text().replace("contact_force", "reaction")
+    history.write_text(rows)
+    assert "contact force" not in plot(folder, output=folder / "h.svg").read_text()
+    history.write_text(rows.replace("reaction", "structure_force"))
+    text = plot(folder, output=folder / "h.svg").read_text()
+    assert ">force on the structure [N]<" in text
+    assert ">structure force z<" in text
+
+
 def test_plane_strain_is_per_length(tmp_path: Path, solver: Any, drive: Any) -> None:
     drive(solver, [History(tmp_path)], 3)
     Manifest(tmp_path, inputs={}, options={}, threads=1, units="mm-ms-g", dimension=2)
@@ -66,7 +78,7 @@ def test_a_history_of_one_row(tmp_path: Path, solver: Any, drive: Any) -> None:
 
 
 def test_what_is_not_there_is_named(folder: Path, tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="no quantity heat; there are: energy, momentum, contact_force, time, dt, kin"):
+    with pytest.raises(ValueError, match="no quantity heat; there are: energy, momentum, contact_force, struct"):
         plot(folder, quantities=["heat"])
     with pytest.raises(ValueError, match=r"is not a plot: give \.png, \.pdf, \.svg"):
         plot(folder, output=folder / "h.mp4")

@@ -19,6 +19,7 @@ from zrno.pipelines.render import render
 from zrno.pipelines.series import ResultSeries
 from zrno.pipelines.stage import scale_for
 from zrno.pipelines.view import axes, extent
+from zrno.solvers.frame import Cells, Frame
 from zrno.translators.text import InputError
 
 SIZE = (320, 180)
@@ -198,3 +199,42 @@ def test_views_are_right_handed_and_named_by_where_the_camera_stands() -> None:
     np.testing.assert_array_equal(axes("iso", np.array([2.0, 1.0, 0.0])).towards, [0, 0, 1])
     box = extent(np.array([[0.0, 0, 0], [2, 1, 0]]), 0.5, axes("z", spread))
     np.testing.assert_allclose(box.size, [3, 2, 1])
+
+
+def test_a_direction_is_a_view() -> None:
+    spread = np.array([2.0, 1.0, 1.0])
+    a = axes("1,-2,0.5", spread)
+    np.testing.assert_allclose(a.towards, np.array([1, -2, 0.5]) / np.linalg.norm([1, -2, 0.5]))
+    np.testing.assert_allclose(np.cross(a.right, a.up), a.towards, atol=1e-15)
+    assert a.up[2] > 0.0
+    np.testing.assert_allclose(axes("0,0,-3", spread).up, [0, 1, 0])
+    for wrong in ("0,0,0", "1,2", "1,2,nan", "inf,0,0", "up", ""):
+        with pytest.raises(ValueError, match=r"or a direction as 1,-2,0\.5"):
+            axes(wrong, spread)
+
+
+def test_beside_elements_particles_touch_and_do_not_pass(
+    tmp_path: Path, folder: Path, solver: Any, drive: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A particle whose cell lies on a plate, seen from below and from above; what lacks the field is grey."""
+    one = {name: values[:1] for name, values in solver.frame().particles.items()}
+    one |= {"position": np.array([[0.0, 0.0, 0.5]]), "radius": np.array([np.cbrt(0.75 / np.pi)])}
+    corners = np.array([[-1.0, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
+    nodes = {"position": corners, "displacement": np.zeros((4, 3)), "warmth": np.arange(4.0)}
+    plate = Cells("quad4", np.array([[0, 1, 2, 3]]), {"material": np.array([3])})
+    monkeypatch.setattr(solver, "frame", lambda: Frame(0.0, 0, one, nodes, [plate]))
+    where = tmp_path / "on"
+    drive(solver, [ResultSeries(where, {1: "a", 3: "plate"}, interval=1.0)], 0)
+    Manifest(where, inputs={}, options={}, threads=1)
+    below = pixels(render(where, field="warmth", view="-z", size=SIZE)[0])
+    assert np.ptp(below[60:130, 105:175], axis=2).min() > 0.2  # the plate's colours hide it
+    above = pixels(render(where, field="warmth", view="z", size=SIZE)[0])
+    assert np.ptp(above[90:102, 132:146], axis=2).max() < 0.1  # the ball, grey
+
+
+def test_colours_of_one_alone(folder: Path) -> None:
+    """The scale is of what is coloured; what is not there cannot be."""
+    files = render(folder, of="particles", size=SIZE)
+    assert files == [folder / "von_mises_particles.png"]
+    with pytest.raises(ValueError, match="no elements to colour; there are: particles"):
+        render(folder, of="elements", size=SIZE)

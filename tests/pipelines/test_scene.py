@@ -128,7 +128,8 @@ def test_the_whole_scene_is_read(tmp_path: Path) -> None:
         (
             "view: iso",
             "view: up",
-            "scene.yaml:8:47: error: render.0.view: is no view (up); expected one of iso, x, y, z, -x, -y, -z",
+            "scene.yaml:8:47: error: render.0.view: is no view (up); expected one of iso, x, y, z, -x, -y, -z, "
+            "or a direction as 1,-2,0.5",
         ),
         (
             "reference: plate.yaml",
@@ -311,7 +312,7 @@ def test_a_scenes_pictures_are_drawn_as_it_says(tmp_path: Path, monkeypatch: pyt
     monkeypatch.setattr("zrno.pipelines.render.render", lambda folder, **options: asked.append(options) or [])
     text = GOOD.replace("{time: 0.5}", "{field: pressure, time: 0.5, view: x, size: [640, 480]}")
     _pictures(scene.load(_scene(tmp_path, text)), tmp_path, [])
-    assert asked[1] == {"field": "pressure", "time": 0.5, "view": "x", "size": (640, 480)}
+    assert asked[1] == {"field": "pressure", "of": None, "time": 0.5, "view": "x", "size": (640, 480)}
 
 
 def _deck() -> Model:
