@@ -23,9 +23,9 @@ Values = Mapping[str, float]
 
 
 def structural_law_of(material: Material, curves: Mapping[int, Curve], axes: Any) -> Law:
-    """As `law_of`, of finite elements. axes: (3, 3) directions of an orthotropic law's, or None: the coordinates'."""
+    """As `law_of`, of finite elements: what a cut-off of tension cuts keeps its shear. axes: (3, 3) directions of an orthotropic law's, or None: the coordinates'."""
     if material.law != "orthotropic":
-        return law_of(material, None, curves)
+        return laws.continuous(law_of(material, None, curves))
     p = {name: material.parameters.get(name, math.nan) for name in LAWS["orthotropic"].parameters}
     values = list(p.values())
     return laws.orthotropic(values[:3], values[3:6], values[6:], axes)

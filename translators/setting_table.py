@@ -259,6 +259,13 @@ TABLE: tuple[Setting | Group, ...] = (
             Setting("mass", one_of("consistent", "lumped"), "consistent", "", "card 8-1"),
             Setting("eigenvalues", count, 10, "how many", "card 8-3"),
             Setting("shells", one_of("bathe_dvorkin", "isoparametric"), "bathe_dvorkin", "four-node shells", "card 13"),
+            Setting(
+                "points",
+                one_of(None, 1, 2, 3, 4, 5),
+                None,
+                "of integration along each axis of hexahedra and plane quadrilaterals; null: 2, quadratic ones 3",
+                "card 13 NGAUSX",
+            ),
             Setting("thickness_points", count, 2, "of integration through a shell", "card 13 a"),
         ),
         "FEM deck: the analysis",
