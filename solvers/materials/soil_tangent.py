@@ -16,7 +16,7 @@ from .cap import GROWTH, Cap, KinematicCap
 from .cap_return import cap_slopes, inside
 from .drucker_prager import DruckerPrager, on_cone
 from .invariants import elastic_trial, second_invariant
-from .law import dispatched, law_body, stress_update
+from .law import GAP, dispatched, law_body, stress_update
 from .perzyna import Perzyna, overstress
 from .tangent import REMNANT, stress_and_tangent, symmetric_tangent
 
@@ -60,8 +60,8 @@ CONSTANT = (REMNANT, 0.0, 0.0, REMNANT)
 
 @law_body(_return, DruckerPrager)
 def _cone(law, trial, root, dt, state, i):
-    first = -3.0 * trial
     bulk = law.lame + 2.0 / 3.0 * law.shear
+    first = -3.0 * (trial + bulk * state[GAP, i] if law.gaps else trial)
     if first < law.tension and not (law.keeps_shear and on_cone(law, bulk, first, root)):
         strength = law.k + law.slope * law.tension
         if not law.keeps_shear or root > strength:
