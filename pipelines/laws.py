@@ -123,6 +123,10 @@ def _elastic(p: Values, points: Floats | None, eos: laws.Eos | None) -> Law:
     return laws.Elastic.from_engineering(p["E"], p["nu"])
 
 
+def _thermo_elastic(p: Values, points: Floats | None, eos: laws.Eos | None) -> Law:
+    return laws.Elastic.from_engineering(p["E"], p["nu"])
+
+
 def _von_mises(p: Values, points: Floats | None, eos: laws.Eos | None) -> Law:
     law: Law = laws.von_mises(p["E"], p["nu"], p["yield_stress"], p["tangent_modulus"], p["beta"])
     if points is not None or p["rate_C"]:
@@ -208,6 +212,7 @@ def _mohr_coulomb(p: Values, points: Floats | None, eos: laws.Eos | None) -> Law
 
 _BUILDERS: dict[str, Callable[[Values, Floats | None, laws.Eos | None], Law]] = {
     "elastic": _elastic,
+    "thermo_elastic": _thermo_elastic,
     "von_mises": _von_mises,
     "von_mises_power": _von_mises_power,
     "hydro": _hydro,

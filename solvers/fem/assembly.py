@@ -12,6 +12,7 @@ from .elements.points import elastic_modulus
 from .groups import make_groups
 from .groups.group import Sink
 from .groups.timed import TimedGroup
+from .heat import Heat, has_heat
 from .problem import SMALL, Problem
 from .shape import Shape
 from .stops import Stops
@@ -74,6 +75,7 @@ class Assembly:
         self.where = np.flatnonzero(self.free.ravel())
         self.transform = self._relations() if problem.relations else None
         self._moment_places = self._places_of_moments()
+        self.heat = Heat(problem, self.groups) if has_heat(problem) else None
         self._timed = [g for g in self.groups if isinstance(g, TimedGroup)]
         self.idle = self._idle()
         self.system = self._system(self.structure.starts, self.structure.columns)
@@ -92,7 +94,9 @@ class Assembly:
     # elements that come and go
 
     def at(self, time: float, shape: Shape) -> bool:
-        """Before a step from a shape that ends at a time. Returns whether elements came or went."""
+        """Before a step from a shape that ends at a time: its temperatures. Returns whether elements came or went."""
+        if self.heat is not None:
+            self.heat.at(time)
         changed = [group.at(time, shape) for group in self._timed]
         if any(changed):
             self.idle = self._idle()
