@@ -23,7 +23,10 @@ Values = Mapping[str, float]
 
 
 def structural_law_of(material: Material, curves: Mapping[int, Curve], axes: Any) -> Law:
-    """As `law_of`, of finite elements: what a cut-off of tension cuts keeps its shear. axes: (3, 3) directions of an orthotropic law's, or None: the coordinates'."""
+    """As `law_of`, of finite elements: what a cut-off of tension cuts keeps its shear.
+
+    axes: (3, 3) directions of an orthotropic law's, or None: the coordinates'.
+    """
     if material.law != "orthotropic":
         return laws.continuous(law_of(material, None, curves))
     p = {name: material.parameters.get(name, math.nan) for name in LAWS["orthotropic"].parameters}

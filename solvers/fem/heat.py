@@ -1,4 +1,4 @@
-"""Temperatures: what they make material grow by. Elements that do not expand, and runs without temperatures, pay nothing.
+"""Temperatures: what they make material grow by. Elements that do not expand and runs without them pay nothing.
 
 A structure begins at its materials' reference temperatures, without strain. A node whose temperature is not given stays
 at the reference.

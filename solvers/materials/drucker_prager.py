@@ -29,7 +29,8 @@ Match = Literal["compression", "extension", "plane_strain"]
 class DruckerPrager(NamedTuple):
     """lame, shear, k [pressure]; slope, flow: alpha of strength and of flow; tension, apex: least I.
 
-    gaps: whether an opening is remembered; keeps_shear: above, 1. State: ep; the gap, a volume strain, where there is one.
+    gaps: whether an opening is remembered; keeps_shear: see 1 above. State: ep; the gap, a volume strain, if there is
+    one.
     """
 
     lame: float

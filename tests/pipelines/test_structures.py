@@ -141,6 +141,34 @@ def test_a_structure_that_is_not_held_is_told(scene: Path, tmp_path: Path) -> No
     assert "can move without resistance" in ran.output
 
 
+def test_a_strip_that_grows_with_its_temperature(scene: Path, tmp_path: Path) -> None:
+    """From the settings' formula through the deck: u = alpha x^2/2 of T = x above the reference 0."""
+    settings = """
+dimension: 2
+materials: {strip: {law: thermo_elastic, E: 1000, nu: 0.0, expansion: 0.01, density: 1}}
+sets:
+  clamped: {fixed: x y}
+  strip: {temperature: x}
+"""
+    folder = scene.parent
+    (folder / "strip.yaml").write_text(settings)
+    result = run([scene], output=tmp_path / "out", options={"render": []})
+    assert result["status"] == "done"
+    frame = load(tmp_path / "out").arrays()
+    place = frame["position"] - frame["displacement"]
+    along = frame["displacement"][:, 0]
+    np.testing.assert_allclose(along, 0.005 * place[:, 0] ** 2, atol=2e-4)
+    (folder / "strip.yaml").write_text(
+        settings.replace("dimension: 2", "dimension: 3").replace("1}}", "1, thickness: 0.1}}")
+    )
+    with pytest.raises(InputError, match="shell elements that expand"):
+        run([scene], output=tmp_path / "shells", options={"render": []})
+    cold = settings.replace("thermo_elastic", "elastic").replace("expansion: 0.01, ", "")
+    (folder / "strip.yaml").write_text(cold)
+    result = run([scene], output=tmp_path / "cold", options={"render": []})
+    assert any("temperatures do nothing" in warning for warning in result["warnings"])
+
+
 def test_refusals_have_their_place(scene: Path, tmp_path: Path) -> None:
     run([scene], output=tmp_path / "made")
     with pytest.raises(InputError, match=r"--set:1:1: error: unknown key fem.sovler"):

@@ -74,7 +74,8 @@ WARM = 3
 _WARM_TABLES = ("E", "nu", "expansion")
 _WARM_PAIR = Layout("2e10.0", "T value")
 _REFERENCE = Layout("7e10.0", "TREF a_2 a_3 a_4 a_5 a_6 a_7")
-OF_LAW = {"thermo_elastic": WARM, "von_mises": 5, "von_mises_power": 6} | {row.law: model for model, row in reversed(FIXED.items())}
+OF_LAW = {row.law: model for model, row in reversed(FIXED.items())}
+OF_LAW |= {"thermo_elastic": WARM, "von_mises": 5, "von_mises_power": 6}
 
 
 def read_law(cards: Cards, material: Material, model: int, points: int, warn: Callable[[str], None]) -> None:

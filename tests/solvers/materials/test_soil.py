@@ -10,7 +10,15 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from zrno.solvers.materials import OPEN, CapHardening, cap, continuous, drucker_prager, drucker_prager_soil, mohr_coulomb
+from zrno.solvers.materials import (
+    OPEN,
+    CapHardening,
+    cap,
+    continuous,
+    drucker_prager,
+    drucker_prager_soil,
+    mohr_coulomb,
+)
 from zrno.solvers.materials.drucker_prager import cone
 from zrno.solvers.materials.mohr_coulomb import mohr_coulomb_return
 from zrno.solvers.materials.point import Point, drive
