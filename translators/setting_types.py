@@ -98,7 +98,8 @@ def scalar(value: Any) -> float | Formula | None:
         return None
     if isinstance(value, str):
         return formula(value)
-    return number()(value)
+    parsed: float = number()(value)
+    return parsed
 
 
 def place(value: Any) -> Formula | None:
