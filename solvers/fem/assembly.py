@@ -249,12 +249,13 @@ class Assembly:
         stops.bind(self.structure, diagonal.reshape(self.n, 6))
         return stops
 
-    def stiffness_values(self, shape: Shape) -> Floats:
-        """Stiffness at a shape, every stop touched, as values of the structure; the matrix itself stays as it is."""
+    def stiffness_values(self, shape: Shape, *, stops: bool = True) -> Floats:
+        """Stiffness at a shape as values of the structure, with every stop touched or with none; the matrix itself
+        stays as it is."""
         sink = Sink(np.zeros((self.n, 6)), self.structure, np.zeros(len(self.structure.columns)))
         for group in self.groups:
             group.evaluate(shape, shape, 0.0, sink)
-        if self.stops is not None:
+        if self.stops is not None and stops:
             self.stops.evaluate(shape.u, sink, closed=True)
         assert sink.values is not None
         return sink.values

@@ -74,7 +74,7 @@ def equilibrium(
     stiff = guess is None and (stale or moved is not None)
     internal, of_motion = _evaluate(assembly, shape, start, dt, stiff=stiff, moved=moved)
     residual = _residual(assembly, target, shape, loads, internal, of_motion)
-    largest = max(floor, _size(loads), _size(of_motion), _size(internal))
+    largest = max(floor, _size(loads), _size(of_motion), _size(internal), _size(residual))  # inertia too
     if guess is not None:
         stale = not assembly.system.factored or _share(residual, loads, internal, largest) > FAST
     first_energy, before = 0.0, math.inf

@@ -146,6 +146,10 @@ class ContinuumGroup:
             self.thickness[lo:hi], self._finite, None if self.small else True, mean, self.modes, self.trial[rows],
             modulus, matrix, forces, answer, rest,
         )  # fmt: skip
+        if matrix is not None and rest is not None and np.isnan(rest).any():
+            bad = int(np.argmax(np.isnan(rest).any(axis=1)))
+            raise Bad(int(el.ids[lo + bad]), "its enhanced strains have no stiffness left, as where all of it flows "
+                      "without hardening; its mean dilatation (fem.dilatation mean) carries that")  # fmt: skip
         sink.add(nodes, self.dofs, self._offsets[lo:hi], forces, matrix)
 
     def _turn(self, nodes: Any, middle: Floats, u: Floats, before: Floats, rows: slice) -> None:
