@@ -31,6 +31,10 @@ def refusals(model: Model, path: str, method: Fem) -> list[Fault]:
     if method.integration != "deck" and not control.dynamic:
         message = "fem.integration is of motion, and the deck is static"
         faults.append(Fault(path, 1, 1, message, method.integration, "a dynamic analysis (NDIN 1)"))
+    central = method.integration == "central" or (method.integration == "deck" and control.integration == 3)
+    if control.dynamic and not control.eigenvalues and central and control.damping == 3 and control.rayleigh[1]:
+        message = "damping by the stiffness in explicit steps is not computed"
+        faults.append(Fault(path, 1, 1, message, f"BETAK {control.rayleigh[1]:g}", "damping by the mass, or newmark"))
     for part in model.parts.values():
         section = model.sections.get(part.section or -1)
         line = section.source.line if section and section.source else 1

@@ -10,8 +10,10 @@ import pytest
 from typer.testing import CliRunner
 
 from zrno.pipelines import load, run
+from zrno.pipelines.build_fem import structure_problem
 from zrno.pipelines.check import check
 from zrno.pipelines.cli import app
+from zrno.translators import read
 from zrno.translators.text import InputError
 
 MESH = """$MeshFormat
@@ -167,6 +169,19 @@ sets:
     (folder / "strip.yaml").write_text(cold)
     result = run([scene], output=tmp_path / "cold", options={"render": []})
     assert any("temperatures do nothing" in warning for warning in result["warnings"])
+
+
+def test_explicit_steps_refuse_damping_by_the_stiffness(scene: Path, tmp_path: Path) -> None:
+    """It would be left out in silence."""
+    run([scene], output=tmp_path / "out", options={"render": []})
+    model = read(scene.parent / "strip.dat")
+    control = model.fem_control
+    assert control is not None
+    control.dynamic, control.integration, control.damping, control.rayleigh = 1, 3, 3, (0.1, 0.0)
+    assert structure_problem(model, "strip.dat").dynamics is not None
+    control.rayleigh = (0.1, 0.2)
+    with pytest.raises(InputError, match="damping by the stiffness in explicit steps"):
+        structure_problem(model, "strip.dat")
 
 
 def test_refusals_have_their_place(scene: Path, tmp_path: Path) -> None:
