@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from zrno.pipelines.fem_method import Fem
-from zrno.pipelines.fem_refusals import axes_of_group, law_of_group, refusals
+from zrno.pipelines.fem_refusals import axes_of_group, heated, law_of_group, refusals
 from zrno.solvers import fem
 from zrno.translators.control import FemControl
 from zrno.translators.elements import TABLE
@@ -41,6 +41,9 @@ def structure_problem(model: Model, path: str, method: Fem | None = None, *, ori
     if lost:
         warning = f"{path}: {lost} forces or moments on degrees of freedom that are held do nothing"
         model.warnings += [warning] if warning not in model.warnings else []
+    if not heated(model) and (cold := sum(len(a.nodes) for a in model.nodal_loads if a.kind == "temperature")):
+        warning = f"{path}: {cold} temperatures do nothing: no material expands by them (model 3)"
+        model.warnings += [warning] if warning not in model.warnings else []
     elements = tuple(_as_original(e) if original else e for e in _elements(model, method))
     plain = all(e.geometry == fem.SMALL for e in elements)
     return fem.Problem(
@@ -57,6 +60,11 @@ def structure_problem(model: Model, path: str, method: Fem | None = None, *, ori
         body_loads=tuple(
             fem.BodyLoad(np.array(b.acceleration), _index(b.curve, numbers), _materials(model, b.parts))
             for b in model.body_loads
+        ),
+        temperatures=tuple(
+            fem.Temperature(load.nodes, load.values, _index(load.curve, numbers))
+            for load in model.nodal_loads
+            if load.kind == "temperature" and heated(model)
         ),
         relations=tuple(
             fem.Relation(int(e.nodes[0]), int(e.dofs[0]) - 1, e.nodes[1:], e.dofs[1:] - 1,
@@ -157,6 +165,8 @@ def _group(model: Model, block: ElementBlock, rows: Any, part: int, method: Fem)
         value=data.get("area"),
         birth=data.get("birth"),
         death=data.get("death"),
+        expansion=material.parameters.get("expansion", 0.0) if heated(model) else 0.0,
+        reference=material.parameters.get("reference_temperature", 0.0),
     )
 
 

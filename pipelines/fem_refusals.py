@@ -31,6 +31,10 @@ def refusals(model: Model, path: str, method: Fem) -> list[Fault]:
     if method.integration != "deck" and not control.dynamic:
         message = "fem.integration is of motion, and the deck is static"
         faults.append(Fault(path, 1, 1, message, method.integration, "a dynamic analysis (NDIN 1)"))
+    central = method.integration == "central" or (method.integration == "deck" and control.integration == 3)
+    if control.dynamic and not control.eigenvalues and central and control.damping == 3 and control.rayleigh[1]:
+        message = "damping by the stiffness in explicit steps is not computed"
+        faults.append(Fault(path, 1, 1, message, f"BETAK {control.rayleigh[1]:g}", "damping by the mass, or newmark"))
     for part in model.parts.values():
         section = model.sections.get(part.section or -1)
         line = section.source.line if section and section.source else 1
@@ -44,7 +48,8 @@ def refusals(model: Model, path: str, method: Fem) -> list[Fault]:
         try:
             law_of_group(model, material, None if section is None else axes_of_group(section), method)
         except (Unsupported, ValueError) as error:
-            faults.append(Fault(path, at, 1, f"material {material.id}: {error}", "", "a law that is computed"))
+            known = "constant E, nu and expansion" if material.native.get("MOD") == 3 else "a law that is computed"
+            faults.append(Fault(path, at, 1, f"material {material.id}: {error}", "", known))
     moving = control.dynamic or control.eigenvalues or control.iteration >= 60
     for block in model.blocks:
         timed = [name for name in ("birth", "death") if np.any(block.data.get(name, 0.0))]
@@ -54,13 +59,41 @@ def refusals(model: Model, path: str, method: Fem) -> list[Fault]:
         if block.family == "shell" and block.kind not in _SHELLS:
             message = f"shells of the kind {block.kind} are not computed yet"
             faults.append(Fault(path, 1, 1, message, "", "three, four, eight or nine nodes"))
-    for load in model.nodal_loads:
-        if load.kind == "temperature":
-            at = load.source.line if load.source else 1
-            faults.append(Fault(path, at, 1, "temperatures are not computed yet", "", "a deck without them"))
+    faults += _of_heat(model, path)
     if control.restart == 1:
         faults.append(Fault(path, 1, 1, "a restart of PAK's own files is not read", "IREST 1", "--resume"))
     return list(dict.fromkeys(faults))
+
+
+def heated(model: Model) -> bool:
+    """Whether temperatures are given to a material that expands by them."""
+    given = any(load.kind == "temperature" for load in model.nodal_loads)
+    return given and any(material.parameters.get("expansion") for material in model.materials.values())
+
+
+def _of_heat(model: Model, path: str) -> list[Fault]:
+    """Temperatures where expansion is not computed."""
+    control = model.fem_control
+    assert control is not None
+    if not heated(model):
+        return []
+    at = next((a.source.line for a in model.nodal_loads if a.kind == "temperature" and a.source), 1)
+    faults = []
+    central = control.dynamic and control.integration == 3
+    if central or control.eigenvalues or control.iteration >= 60:
+        faults.append(Fault(path, at, 1, "temperatures in vibration, in explicit steps or on a path that is found are "
+                            "not computed", "", "implicit steps with loads that are given"))  # fmt: skip
+    for block in model.blocks:
+        materials = [model.materials.get(model.parts[part].material or -1) for part in np.unique(block.part).tolist()]
+        if not any(m is not None and m.parameters.get("expansion") for m in materials):
+            continue
+        if block.family not in ("solid", "plane"):
+            message = f"{block.kind} {block.family} elements that expand with temperature are not computed"
+            faults.append(Fault(path, at, 1, message, "", "solids and plane elements"))
+        elif any(np.any(block.data.get(name, 0.0)) for name in ("birth", "death")):
+            message = f"{block.kind} elements that expand with temperature and are born or die are not computed"
+            faults.append(Fault(path, at, 1, message, "", "elements that are there in all steps"))
+    return faults
 
 
 def law_of_group(model: Model, material: Material, axes: Any, method: Fem) -> Any:

@@ -23,9 +23,12 @@ Values = Mapping[str, float]
 
 
 def structural_law_of(material: Material, curves: Mapping[int, Curve], axes: Any) -> Law:
-    """As `law_of`, of finite elements. axes: (3, 3) directions of an orthotropic law's, or None: the coordinates'."""
+    """As `law_of`, of finite elements: what a cut-off of tension cuts keeps its shear.
+
+    axes: (3, 3) directions of an orthotropic law's, or None: the coordinates'.
+    """
     if material.law != "orthotropic":
-        return law_of(material, None, curves)
+        return laws.continuous(law_of(material, None, curves))
     p = {name: material.parameters.get(name, math.nan) for name in LAWS["orthotropic"].parameters}
     values = list(p.values())
     return laws.orthotropic(values[:3], values[3:6], values[6:], axes)
@@ -123,6 +126,10 @@ def _elastic(p: Values, points: Floats | None, eos: laws.Eos | None) -> Law:
     return laws.Elastic.from_engineering(p["E"], p["nu"])
 
 
+def _thermo_elastic(p: Values, points: Floats | None, eos: laws.Eos | None) -> Law:
+    return laws.Elastic.from_engineering(p["E"], p["nu"])
+
+
 def _von_mises(p: Values, points: Floats | None, eos: laws.Eos | None) -> Law:
     law: Law = laws.von_mises(p["E"], p["nu"], p["yield_stress"], p["tangent_modulus"], p["beta"])
     if points is not None or p["rate_C"]:
@@ -208,6 +215,7 @@ def _mohr_coulomb(p: Values, points: Floats | None, eos: laws.Eos | None) -> Law
 
 _BUILDERS: dict[str, Callable[[Values, Floats | None, laws.Eos | None], Law]] = {
     "elastic": _elastic,
+    "thermo_elastic": _thermo_elastic,
     "von_mises": _von_mises,
     "von_mises_power": _von_mises_power,
     "hydro": _hydro,

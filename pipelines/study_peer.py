@@ -43,7 +43,10 @@ _NUMBER = r"[-+]?\d+\.\d+(?:E[-+]?\d+)?"
 def compare(
     plan: Plan, directory: Path, *, repeat: int, threads: int | None, allow_outside: bool, progress: bool
 ) -> tuple[list[dict[str, Any]], str]:
-    """Rows of the study's peer, a row a mesh and type of elements, and what is to be said of them ("" nothing)."""
+    """Rows of the study's peer, a row a mesh and type of elements, and what is to be said of them ("" nothing).
+
+    threads: None for as many as our own runs of the same mesh took.
+    """
     peer = plan.study.peer
     if peer is None:
         return [], ""
@@ -55,6 +58,7 @@ def compare(
         scene = scenes.load(plan.path, command_options.split({**plan.options, **own}).scene)
         mesh = scene.meshes[0]
         models: dict[str, Model] = {}
+        ours = threads_of(plan, directory, own)
         for name, more in peer.elements.items():
             numbers = {**mesh.numbers, **(more or {})}
             if repr(numbers) not in models:
@@ -66,7 +70,7 @@ def compare(
             where = directory / "runs" / f"{PROGRAM}_{name}_{run_name(own)}"
             if progress:
                 print(f"[{PROGRAM}] {name} {run_name(own)}", file=sys.stderr)
-            rows.append(_row(plan, own, name, where, model, given, repeat, threads or 1))
+            rows.append(_row(plan, own, name, where, model, given, repeat, threads or ours))
     return rows, "" if rows else "no mesh of the study is of the peer's types of elements"
 
 
@@ -74,10 +78,28 @@ def _meshes(plan: Plan) -> list[dict[str, Any]]:
     """The options of the runs that make meshes of their own."""
     found: list[dict[str, Any]] = []
     for chosen in plan.runs.values():
-        own = {key: value for key, value in chosen.items() if not key.startswith("fem.")}
+        own = _of_mesh(chosen)
         if own not in found:
             found.append(own)
     return found
+
+
+def _of_mesh(chosen: Mapping[str, Any]) -> dict[str, Any]:
+    """The options of a run that are its mesh's."""
+    return {key: value for key, value in chosen.items() if not key.startswith("fem.")}
+
+
+def threads_of(plan: Plan, directory: Path, own: Mapping[str, Any]) -> int:
+    """The most threads that our own runs of a mesh had, by their manifests; 1 where there is none."""
+    most = 1
+    for name, chosen in plan.runs.items():
+        if own == _of_mesh(chosen):
+            try:
+                run = json.loads((directory / "runs" / name / "run.json").read_text(encoding="utf-8"))
+                most = max(most, int(run["threads"]))
+            except (OSError, ValueError, KeyError, TypeError):
+                continue
+    return most
 
 
 def _row(
@@ -96,7 +118,7 @@ def _row(
     row: dict[str, Any] = {
         "run": where.name, "program": PROGRAM, "element": name, "options": dict(own), "nodes": len(model.xyz),
         "error": None, "value": None, "wall_seconds": statistics.median(stamp["walls"]),
-        "repeats": len(stamp["walls"]), "message": stamp["message"],
+        "repeats": len(stamp["walls"]), "message": stamp["message"], "threads": threads,
     }  # fmt: skip
     if not row["message"]:
         try:

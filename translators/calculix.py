@@ -7,8 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from zrno.translators.model import Ints, Model
 from zrno.translators.text import write_atomically
@@ -49,24 +51,27 @@ def _pieces(model: Model, name: str, sets: Mapping[str, Ints]) -> Iterator[bytes
     yield b"*NODE, NSET=NALL\n"
     for first in range(0, len(numbers), _CHUNK):
         rows = numbers[first : first + _CHUNK]
-        places = model.xyz[rows].tolist()
-        cards = [f"{n + 1},{x:.12g},{y:.12g},{z:.12g}\n" for n, (x, y, z) in zip(rows.tolist(), places, strict=True)]
-        yield "".join(cards).encode()  # it reads 20 characters a number, and what is longer wrongly
+        numbered = np.column_stack([rows + 1, model.xyz[rows]])
+        yield _rows(numbered, "%d,%.12g,%.12g,%.12g\n")  # it reads 20 characters a number, and what is longer wrongly
     count = 0
     for block, mine in blocks:
         for part in np.unique(block.part[mine]).tolist():
             nodes = block.nodes[mine & (block.part == part)] + 1
             yield f"*ELEMENT, TYPE={name}, ELSET={_word(model.parts[part].name or f'PART{part}')}\n".encode()
-            for row in nodes.tolist():
-                count += 1
-                yield _lines([count, *row])
+            numbered = np.column_stack([np.arange(count + 1, count + 1 + len(nodes)), nodes])
+            count += len(nodes)
+            card = _card(numbered.shape[1])
+            for first in range(0, len(nodes), _CHUNK):
+                yield _rows(numbered[first : first + _CHUNK], card)
     yield b"*ELSET, ELSET=EALL, GENERATE\n1,%d\n" % count
     for label, members in sets.items():
         kept = np.asarray(members)[used[members]] + 1
         if len(kept):
             yield f"*NSET, NSET={_word(label)}\n".encode()
-            for first in range(0, len(kept), _A_LINE):
-                yield _lines(kept[first : first + _A_LINE].tolist())
+            whole = len(kept) // _A_LINE * _A_LINE
+            yield _rows(kept[:whole].reshape(-1, _A_LINE), _card(_A_LINE))
+            if whole < len(kept):
+                yield _rows(kept[None, whole:], _card(len(kept) - whole))
 
 
 def _word(name: str) -> str:
@@ -74,7 +79,12 @@ def _word(name: str) -> str:
     return "".join(c if c.isalnum() or c in "_-." else "_" for c in name.upper())[:80]
 
 
-def _lines(values: list[int]) -> bytes:
-    """Numbers, continued on the next line after a comma."""
-    pieces = [values[i : i + _A_LINE] for i in range(0, len(values), _A_LINE)]
-    return (",\n".join(",".join(map(str, piece)) for piece in pieces) + "\n").encode()
+def _card(count: int) -> str:
+    """How so many whole numbers are said: after a comma they go on in the next line."""
+    pieces = [",".join(["%d"] * min(_A_LINE, count - i)) for i in range(0, count, _A_LINE)]
+    return ",\n".join(pieces) + "\n"
+
+
+def _rows(table: NDArray[Any], card: str) -> bytes:
+    """Rows (n, k) of numbers, each by a card with k places."""
+    return (card * len(table) % tuple(table.ravel().tolist())).encode()

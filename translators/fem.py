@@ -28,6 +28,7 @@ _FIRST_ORDER = {"wedge15": "wedge6", "wedge18": "wedge6", "pyramid13": "pyramid5
 _BENDING = ("shell", "beam")  # with rotations at their nodes
 _LAWS: dict[str, tuple[str, ...]] = {  # of a .dat deck, with the parameters that its cards have
     "elastic": ("E", "nu"),
+    "thermo_elastic": tuple(LAWS["thermo_elastic"].parameters),
     "orthotropic": tuple(LAWS["orthotropic"].parameters),
     "von_mises": ("E", "nu", "yield_stress", "tangent_modulus", "beta"),
     "von_mises_power": ("E", "nu", "yield_stress", "Cy", "n", "M"),

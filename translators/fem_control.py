@@ -22,6 +22,8 @@ def native_of(family: str, plastic: bool, settings: Settings) -> dict[str, Any]:
     """What a group of elements is told beside its section, by PAK's names: kinematics, kind of shell, points."""
     fem = settings["fem"]
     native: dict[str, Any] = {"IATYP": _KINEMATICS.get(fem["kinematics"], int(plastic))}
+    if family in ("solid", "plane") and fem["points"]:
+        native["points"] = fem["points"]  # of a mixed part: its triangles and tetrahedra have their own
     if family == "shell":
         native["NGAUSZ"] = max(fem["thickness_points"], 5 if plastic else 2)
         native["quadrilaterals"] = _SHELLS[fem["shells"]]  # of a mixed part: its triangles have a type of their own

@@ -45,6 +45,11 @@ def of_settings(model: Model, settings: Settings) -> None:
                 nodes = node_set(model, settings, name)
                 dofs, values = np.full(len(nodes), axis + 1), np.full(len(nodes), float(value))
                 model.nodal_loads.append(NodalLoad(kind, nodes, dofs, values, curve, name=name))
+        if entry["temperature"] is not None:
+            nodes = node_set(model, settings, name)
+            values = np.broadcast_to(held.values_at(entry["temperature"], model.xyz[nodes], "temperature"), len(nodes))
+            dofs = np.zeros(len(nodes), np.int64)
+            model.nodal_loads.append(NodalLoad("temperature", nodes, dofs, values.astype(float), curve, name=name))
         if entry["pressure"] or any(entry["traction"]):
             _face_loads(model, settings, name, entry, curve)
 

@@ -134,6 +134,12 @@ def _elastic_of_rigid(material: Material, eos: Eos | None) -> _Found:
     )
 
 
+def _elastic_of_warm(material: Material, eos: Eos | None) -> _Found:
+    p = material.parameters
+    lost = "without expansion by temperature" if p["expansion"] else ""
+    return replace(material, law="elastic", parameters={"E": p["E"], "nu": p["nu"]}), lost
+
+
 def _von_mises_of_hydro(material: Material, eos: Eos | None) -> _Found:
     p = material.parameters
     bulk = _bulk_of(eos, material.density)
@@ -200,6 +206,7 @@ def _cap_of_drucker_prager(material: Material, eos: Eos | None) -> _Found:
 _Rule = Callable[[Material, Eos | None], _Found]
 _RULES: dict[str, dict[str, _Rule]] = {
     "rigid": {"elastic": _elastic_of_rigid},
+    "thermo_elastic": {"elastic": _elastic_of_warm},
     "von_mises": {"von_mises_power": _power_of_von_mises},
     "von_mises_power": {"von_mises": _von_mises_of_power},
     "hydro": {"von_mises": _von_mises_of_hydro},

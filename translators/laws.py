@@ -27,6 +27,10 @@ _ISOTROPIC: Parameters = {"E": _NEEDED, "nu": _NEEDED}
 
 LAWS: dict[str, Law] = {
     "elastic": Law("linear elastic, isotropic", _ISOTROPIC),
+    "thermo_elastic": Law(
+        "linear elastic, isotropic; expansion: strain by a degree of temperature above the reference",
+        {**_ISOTROPIC, "expansion": _NEEDED, "reference_temperature": 0.0},
+    ),
     "orthotropic": Law(
         "linear elastic, orthotropic",
         dict.fromkeys(("Ex", "Ey", "Ez", "nu_xy", "nu_yz", "nu_zx", "Gxy", "Gyz", "Gzx"), _NEEDED),

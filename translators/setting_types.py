@@ -92,6 +92,16 @@ def field(value: Any) -> tuple[float | Formula, ...]:
     return tuple(found)
 
 
+def scalar(value: Any) -> float | Formula | None:
+    """A number or a formula of the place, or null."""
+    if value is None:
+        return None
+    if isinstance(value, str):
+        return formula(value)
+    parsed: float = number()(value)
+    return parsed
+
+
 def place(value: Any) -> Formula | None:
     """A region, by a formula."""
     if value is None:

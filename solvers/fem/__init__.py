@@ -18,6 +18,7 @@ from .problem import (
     Problem,
     Relation,
     Stop,
+    Temperature,
 )
 from .solver import Solver
 
@@ -40,4 +41,5 @@ __all__ = [
     "Relation",
     "Solver",
     "Stop",
+    "Temperature",
 ]

@@ -12,6 +12,7 @@ from .elements.points import elastic_modulus
 from .groups import make_groups
 from .groups.group import Sink
 from .groups.timed import TimedGroup
+from .heat import Heat, has_heat
 from .problem import SMALL, Problem
 from .shape import Shape
 from .stops import Stops
@@ -74,6 +75,7 @@ class Assembly:
         self.where = np.flatnonzero(self.free.ravel())
         self.transform = self._relations() if problem.relations else None
         self._moment_places = self._places_of_moments()
+        self.heat = Heat(problem, self.groups) if has_heat(problem) else None
         self._timed = [g for g in self.groups if isinstance(g, TimedGroup)]
         self.idle = self._idle()
         self.system = self._system(self.structure.starts, self.structure.columns)
@@ -92,7 +94,9 @@ class Assembly:
     # elements that come and go
 
     def at(self, time: float, shape: Shape) -> bool:
-        """Before a step from a shape that ends at a time. Returns whether elements came or went."""
+        """Before a step from a shape that ends at a time: its temperatures. Returns whether elements came or went."""
+        if self.heat is not None:
+            self.heat.at(time)
         changed = [group.at(time, shape) for group in self._timed]
         if any(changed):
             self.idle = self._idle()
@@ -245,12 +249,13 @@ class Assembly:
         stops.bind(self.structure, diagonal.reshape(self.n, 6))
         return stops
 
-    def stiffness_values(self, shape: Shape) -> Floats:
-        """Stiffness at a shape, every stop touched, as values of the structure; the matrix itself stays as it is."""
+    def stiffness_values(self, shape: Shape, *, stops: bool = True) -> Floats:
+        """Stiffness at a shape as values of the structure, with every stop touched or with none; the matrix itself
+        stays as it is."""
         sink = Sink(np.zeros((self.n, 6)), self.structure, np.zeros(len(self.structure.columns)))
         for group in self.groups:
             group.evaluate(shape, shape, 0.0, sink)
-        if self.stops is not None:
+        if self.stops is not None and stops:
             self.stops.evaluate(shape.u, sink, closed=True)
         assert sink.values is not None
         return sink.values

@@ -83,7 +83,7 @@ def equilibrium(
     stiff = stale or moved is not None  # the matrix is that of the shape
     internal, of_motion = _evaluate(assembly, shape, start, dt, stiff=stiff, moved=moved)
     residual = _residual(assembly, target, shape, loads, internal, of_motion)
-    largest = max(scale.force, _size(loads), _size(of_motion), _size(internal))
+    largest = max(scale.force, _size(loads), _size(of_motion), _size(internal), _size(residual))  # inertia too
     if guess is not None:
         stale = stale or _share(residual, loads, internal, largest) > FAST
     first_energy, before = 0.0, math.inf

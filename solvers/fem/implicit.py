@@ -35,7 +35,7 @@ class Integrator:
         self._rigidity_values: Floats | None = None
         if how.stiffness_damping:
             self._rigidity = assembly.full_matrix("stiffness", start)
-            self._rigidity_values = assembly.stiffness_values(start)
+            self._rigidity_values = assembly.stiffness_values(start, stops=False)  # planes have no damping
         self.alpha = how.alpha if how.method == "hht" else 0.0
         self.beta, self.gamma = how.beta, how.gamma
         if how.method == "hht":

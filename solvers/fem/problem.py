@@ -27,7 +27,8 @@ class Elements:
     the element's mean; plane: "strain", "stress", "axisymmetric"; thickness: (e,) or (e, n); layers: points through a
     shell's thickness; untied: of a four-node shell, strains of the displacements alone, which lock;
     section: a beam's or truss's numbers by name (area, iyy, izz, j, shear_y, shear_z);
-    orientation: (e, 3) a beam's; value: (e, ...) stiffness of springs, mass of masses; birth, death: (e,) times.
+    orientation: (e, 3) a beam's; value: (e, ...) stiffness of springs, mass of masses; birth, death: (e,) times;
+    expansion: strain in all directions by a degree of temperature above `reference`.
     """
 
     kind: str
@@ -51,6 +52,8 @@ class Elements:
     value: Floats | None = None
     birth: Floats | None = None
     death: Floats | None = None
+    expansion: float = 0.0
+    reference: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +93,15 @@ class Motion:
     values: Floats
     curve: int | None = None
     incremental: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Temperature:
+    """Temperatures of nodes. nodes, values: (m,)."""
+
+    nodes: Ints
+    values: Floats
+    curve: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,6 +220,7 @@ class Problem:
     motions: tuple[Motion, ...] = ()
     face_loads: tuple[FaceLoad, ...] = ()
     body_loads: tuple[BodyLoad, ...] = ()
+    temperatures: tuple[Temperature, ...] = ()
     relations: tuple[Relation, ...] = ()
     stops: tuple[Stop, ...] = ()
     steps: tuple[tuple[int, float], ...] = ((1, 1.0),)

@@ -214,7 +214,7 @@ class Increments(Still):
             reach = now + mover.theta * dt
             target = mover.target(solver.shape, change * mover.theta, lambda s: solver.loads.at(reach, s.u),
                                   mover.theta * dt)  # fmt: skip
-        keep = solver.linear and math.isclose(self._kept, dt, rel_tol=1e-9)
+        keep = solver.linear and solver.assembly.heat is None and math.isclose(self._kept, dt, rel_tol=1e-9)
         guess = self._guess(change, dt)
         how = solver.problem.iteration
         try:

@@ -76,13 +76,17 @@ class Solver:
             return Guided(self)
         if any(has_life(e) for e in p.elements) and (p.modes or p.path is not None or p.dynamics is not None):
             raise ValueError("elements are born and die in statics alone, with loads that are given")
+        central = p.dynamics is not None and p.dynamics.method == "central"
+        if self.assembly.heat is not None and (p.modes or p.path is not None or central):
+            raise ValueError("temperatures are computed in steps to equilibrium alone, with loads that are given")
         if p.modes:
             return Vibrations()
         if p.path is not None:
             return PathFollowing(self, p.path)
-        if p.dynamics is not None and p.dynamics.method == "central":
+        if central:
             return Explicit(self)
-        return Superposition() if self.linear and p.dynamics is None else Increments(self)
+        simple = self.linear and p.dynamics is None and self.assembly.heat is None
+        return Superposition() if simple else Increments(self)
 
     def kernels(self) -> str:
         """What a run is built of, for the log."""

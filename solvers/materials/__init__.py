@@ -59,6 +59,13 @@ def family(law: Law) -> str:
     return _FAMILIES.get(type(law), "solid")
 
 
+def continuous(law: Law) -> Law:
+    """The law with a cut-off of tension that leaves shear, so that stresses are continuous in the strain."""
+    if isinstance(law, KinematicCap):
+        return law._replace(cap=law.cap._replace(keeps_shear=True))
+    return law._replace(keeps_shear=True) if isinstance(law, Cap | DruckerPrager) else law
+
+
 def cohesive(law: Law) -> bool:
     """Whether grain of a soil's law holds together by itself."""
     if isinstance(law, KinematicCap):
@@ -104,6 +111,7 @@ __all__ = [
     "cap",
     "cohesive",
     "constant_wave",
+    "continuous",
     "drucker_prager",
     "drucker_prager_soil",
     "failing",

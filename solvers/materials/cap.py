@@ -9,7 +9,7 @@ I = -(s_xx + s_yy + s_zz), J = sqrt(J2); names in brackets are LS-DYNA's.
 - soil: dilation on the envelope moves the cap back until its corner (I = L) meets the stress, then no more volumetric
   flow. Rock (LS-DYNA ftype 2): the cap never moves back
 - tension   I >= T: beyond it the stress becomes the pressure T/3, without shear; the cap stays. T is not below the
-  envelope's apex Fe(I) = 0
+  envelope's apex Fe(I) = 0. With `keeps_shear` I = T is a surface of its own instead, as in `drucker_prager`
 - flow is associated on each surface, and between the two normals where they meet
 - kinematic (`KinematicCap`): the surfaces are those of s - a, da = C F dep', F = 1 - (s - a):a/(2 N Fe) >= 0: a moves
   along the flow until it has N of J there. The limit surface is the envelope moved out by N: to keep it on the
@@ -45,6 +45,7 @@ class Cap(NamedTuple):
     tension: float  # T, at least the envelope's apex
     start: float
     soil: bool
+    keeps_shear: bool = False
 
 
 class KinematicCap(NamedTuple):
@@ -198,7 +199,7 @@ def _kinematic(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, 
         over = max(0.0, root - envelope(law.cap, max(first, law.cap.tension))[0])
         share = max(0.0, 1.0 - along / (2.0 * law.size)) / (1.0 + 0.5 * law.rate * over / (law.cap.shear * law.size))
         shear = law.cap.shear + 0.5 * law.rate * share
-        cut = first < law.cap.tension
+        cut = first < law.cap.tension and not law.cap.keeps_shear
         first, new, centre = cap_return(law.cap, shear, first, root, centre)
         scale = new / root if root > 0.0 else 0.0
         old = s_xx * x_xx + s_yy * x_yy + s_zz * x_zz + 2.0 * (s_xy * x_xy + s_yz * x_yz + s_zx * x_zx)

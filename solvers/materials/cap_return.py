@@ -2,7 +2,7 @@
 
 An implicit step (backward Euler) in I and J, by one unknown in each region ([T] 4.6.3.22-44), each found by Newton
 inside a bracket, so that any increment has an answer:
-- beyond T: the cut-off
+- beyond T: the cut-off; the envelope first where I = T keeps shear
 - I(trial) <= L: on the envelope; the unknown is I, of I - I(trial) = 9 K/G (J(trial) - Fe(I)) Fe'(I). Where dilation
   would move the cap's corner past I, the stress stays with the corner
 - I(trial) > L and R > 0: on the ellipse; the unknown is L, which grows by the compaction. [T] sends the points above
@@ -95,7 +95,7 @@ def inside(law, first, root, centre):
 def cap_return(law, shear, first, root, centre):
     """I, J, L of the new stress; (first, root) is the trial, not `inside`."""
     bulk = law.lame + 2.0 / 3.0 * law.shear
-    if first < law.tension:
+    if first < law.tension and not law.keeps_shear:
         return law.tension, 0.0, centre
     if first <= centre:
         new, centre = _on_envelope(law, bulk, shear, first, root, centre)
@@ -150,9 +150,17 @@ def _on_envelope(law, bulk, shear, first, root, centre):
     scale = 9.0 * bulk / shear
     strength, slope = envelope(law, centre)
     corner = centre - first - scale * (root - strength) * slope < 0.0
-    x = first
-    if not corner:
-        low, high = first, centre
+    x = max(first, law.tension)
+    dilated = 0.0
+    cut = False
+    if first < law.tension:
+        strength, slope = envelope(law, law.tension)
+        dilated = scale * max(0.0, root - strength) * slope
+        cut = law.tension - first > dilated
+    if cut:
+        corner = False
+    elif not corner:
+        low, high = x, centre
         for _ in range(ITERATIONS):
             strength, slope = envelope(law, x)
             value = x - first - scale * (root - strength) * slope
@@ -169,12 +177,13 @@ def _on_envelope(law, bulk, shear, first, root, centre):
             x = new
             if change <= 1e-16 * (abs(first) + abs(centre)) or (newton and change <= CLOSE * abs(x)):
                 break
+        dilated = x - first
     if not law.soil:
         return (centre if corner else x), centre
     if centre == 0.0:
         return (0.0 if corner else x), 0.0
     if not corner:
-        target = old - (x - first) / (3.0 * bulk)
+        target = old - dilated / (3.0 * bulk)
         least = max(x, 0.0)
         there, _ = _compacted(law, least)
         if there <= target:
@@ -244,7 +253,7 @@ def _on_ellipse(law, bulk, shear, first, root, centre):
 @kernel
 def cap_slopes(law, shear, first, root, centre):
     """J of the new stress, and dI/dI*, dI/dJ*, dJ/dI*, dJ/dJ*; arguments as of `cap_return`."""
-    if first < law.tension:
+    if first < law.tension and not law.keeps_shear:
         return 0.0, 0.0, 0.0, 0.0, 0.0
     bulk = law.lame + 2.0 / 3.0 * law.shear
     new, left, after = cap_return(law, shear, first, root, centre)
@@ -257,7 +266,7 @@ def cap_slopes(law, shear, first, root, centre):
             by_first = 1.0 / (1.0 + 3.0 * bulk * _compacted(law, new)[1])
         elif first >= 0.0:
             by_first = 1.0
-    elif new < centre:
+    elif new < centre and not (new == law.tension and first < new):
         scale = 9.0 * bulk / shear
         curvature = -law.decay * (slope - law.theta)
         by_first = 1.0 / (1.0 + scale * (slope * slope - (root - strength) * curvature))

@@ -1,7 +1,9 @@
 """Drucker-Prager: perfectly plastic cone, flow by an angle of its own, apex, tension cut-off.
 
 Compression is positive in I = -(s_xx + s_yy + s_zz), J = sqrt(J2). J <= k + alpha I, flow along J - alpha_flow I:
-1. beyond the cut-off, I(trial) < T: the pressure T/3 without shear ([T] 4.6.3, LS-DYNA MAT_025)
+1. beyond the cut-off, I(trial) < T: the pressure T/3 without shear ([T] 4.6.3, LS-DYNA MAT_025). With `keeps_shear`
+   I = T is a surface of its own instead, with its normal as flow: what is cut off keeps the shear that the cone allows.
+   Only so is the stress continuous in the strain, which Newton's method on a structure needs
 2. dl = (J - k - alpha I)/(G + 9 K alpha alpha_flow), I += 9 K alpha_flow dl, J = k + alpha I        (4.6.3.24-30)
 3. where that J is negative: the apex I = -k/alpha
 The cones of cohesion and friction angle are those of Mohr-Coulomb's triaxial compression or extension (through the
@@ -17,6 +19,7 @@ from __future__ import annotations
 import math
 from typing import Literal, NamedTuple
 
+from ..jit import kernel
 from .invariants import elastic_trial, flow_work, second_invariant
 from .law import GAP, OPEN, PLASTIC_STRAIN, bulk_modulus, lame_constants, law_body, state_rows, stress_update
 
@@ -26,7 +29,8 @@ Match = Literal["compression", "extension", "plane_strain"]
 class DruckerPrager(NamedTuple):
     """lame, shear, k [pressure]; slope, flow: alpha of strength and of flow; tension, apex: least I.
 
-    gaps: whether an opening is remembered. State: ep; the gap, a volume strain, where there is one.
+    gaps: whether an opening is remembered; keeps_shear: see 1 above. State: ep; the gap, a volume strain, if there is
+    one.
     """
 
     lame: float
@@ -37,6 +41,7 @@ class DruckerPrager(NamedTuple):
     tension: float
     apex: float
     gaps: bool = False
+    keeps_shear: bool = False
 
 
 def drucker_prager(
@@ -102,6 +107,13 @@ def drucker_prager_soil(
     return drucker_prager(young, poisson, k, slope, flow=flow, tension=tension, gaps=gaps)
 
 
+@kernel
+def on_cone(law, bulk, first, root):
+    """Whether a trial beyond the cut-off returns to the cone before it gets there."""
+    over = root - law.k - law.slope * law.tension
+    return law.tension - first <= 9.0 * bulk * law.flow / law.shear * over
+
+
 @law_body(stress_update, DruckerPrager)
 def _update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_xy, s_yz, s_zx, rho, e, dt, state, i):
     volumetric, mean, x_xx, x_yy, x_zz, x_xy, x_yz, x_zx = elastic_trial(
@@ -115,9 +127,9 @@ def _update(law, de_xx, de_yy, de_zz, de_xy, de_yz, de_zx, s_xx, s_yy, s_zz, s_x
     root = math.sqrt(second_invariant(x_xx, x_yy, x_zz, x_xy, x_yz, x_zx))
     first = -3.0 * pull
     left = root
-    if first < law.tension:
+    if first < law.tension and not (law.keeps_shear and on_cone(law, bulk, first, root)):
         first = law.tension
-        left = 0.0
+        left = min(root, law.k + law.slope * first) if law.keeps_shear else 0.0
     else:
         over = root - law.k - law.slope * first
         if over > 0.0:

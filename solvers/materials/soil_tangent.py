@@ -14,9 +14,9 @@ from ..jit import kernel
 from .cam_clay import CamClay, clay_return
 from .cap import GROWTH, Cap, KinematicCap
 from .cap_return import cap_slopes, inside
-from .drucker_prager import DruckerPrager
+from .drucker_prager import DruckerPrager, on_cone
 from .invariants import elastic_trial, second_invariant
-from .law import dispatched, law_body, stress_update
+from .law import GAP, dispatched, law_body, stress_update
 from .perzyna import Perzyna, overstress
 from .tangent import REMNANT, stress_and_tangent, symmetric_tangent
 
@@ -60,13 +60,16 @@ CONSTANT = (REMNANT, 0.0, 0.0, REMNANT)
 
 @law_body(_return, DruckerPrager)
 def _cone(law, trial, root, dt, state, i):
-    first = -3.0 * trial
-    if first < law.tension:
-        return 0.0, CONSTANT
+    bulk = law.lame + 2.0 / 3.0 * law.shear
+    first = -3.0 * (trial + bulk * state[GAP, i] if law.gaps else trial)
+    if first < law.tension and not (law.keeps_shear and on_cone(law, bulk, first, root)):
+        strength = law.k + law.slope * law.tension
+        if not law.keeps_shear or root > strength:
+            return (strength if law.keeps_shear else 0.0), CONSTANT
+        return root, (REMNANT, 0.0, 0.0, 1.0)
     over = root - law.k - law.slope * first
     if not over > 0.0:
         return root, ELASTIC
-    bulk = law.lame + 2.0 / 3.0 * law.shear
     soft = 1.0 / (law.shear + 9.0 * bulk * law.slope * law.flow)
     left = root - law.shear * soft * over
     if left < 0.0:
@@ -82,7 +85,7 @@ def _cap(law, trial, root, dt, state, i):
     if inside(law, -3.0 * trial, root, centre):
         return root, ELASTIC
     left, i_i, i_j, j_i, j_j = cap_slopes(law, law.shear, -3.0 * trial, root, centre)
-    return left, (i_i, -i_j / 3.0, -3.0 * j_i, j_j)
+    return left, (max(i_i, REMNANT), -i_j / 3.0, -3.0 * j_i, max(j_j, REMNANT))
 
 
 @law_body(_return, CamClay)

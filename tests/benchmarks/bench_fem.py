@@ -4,7 +4,8 @@
 
 Cases: cant50k (52 k unknowns), cant200k (207 k), plast30k (31 k, von Mises, ten increments), roof70 (shells, 30 k).
 Ours: seconds from the mesh in memory to stresses in memory, in a process that has its kernels; CalculiX: its whole
-process, whose input and output are small beside it. Both are run by turns; the median is told, and the ratio.
+process, whose input and output are small beside it. Both are run by turns; the median is told, and the ratio. Memory:
+the peak of a process of its own each, interpreter and libraries included, by GNU time (else not told).
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ import numpy as np
 from zrno.solvers import fem
 from zrno.solvers.materials import Elastic, von_mises
 
+GNU_TIME = "/usr/bin/time"
 CASES = ("cant50k", "cant200k", "plast30k", "roof70")
 INPUT = {"cant50k": "cant50k_C3D8", "cant200k": "cant200k_C3D8", "plast30k": "plast30k_C3D8", "roof70": "roof70_S4"}
 
@@ -111,6 +113,29 @@ def calculix(case: str, peers: Path, threads: int) -> tuple[float, float]:
         return wall, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
+def peak(command: list[str], folder: Path, threads: int) -> float:
+    """Megabytes of a process, by GNU time: the kernel counts what a parent had before it to a child of its own."""
+    told = folder / "peak"
+    environment = {**os.environ, "OMP_NUM_THREADS": str(threads), "CCX_NPROC_EQUATION_SOLVER": str(threads)}
+    measured = [GNU_TIME, "-f", "%M", "-o", str(told), *command]
+    subprocess.run(measured, cwd=folder, env=environment, capture_output=True, check=False)
+    return int(told.read_text().split()[-1]) / 1024
+
+
+def peaks(case: str, peers: Path, threads: int) -> str:
+    """Ours, and CalculiX's where it is installed."""
+    if not Path(GNU_TIME).exists():
+        return ""
+    with tempfile.TemporaryDirectory() as folder:
+        where = Path(folder)
+        own = [sys.executable, str(Path(__file__).resolve()), case, "--once", "--peers", str(peers.resolve())]
+        told = f"; peak {peak([*own, '--threads', str(threads)], where, threads):.0f} MB"
+        if shutil.which("ccx") is not None:
+            shutil.copy(peers / f"{INPUT[case]}.inp", where / "case.inp")
+            told += f", ccx {peak(['ccx', 'case'], where, threads):.0f} MB"
+    return told
+
+
 def main() -> None:
     """Run the cases and print a row each."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -118,7 +143,12 @@ def main() -> None:
     parser.add_argument("--peers", type=Path, default=Path(__file__).resolve().parents[3] / "shared/peers/fem")
     parser.add_argument("--threads", type=int, nargs="*", default=[1, 2])
     parser.add_argument("--repeat", type=int, default=3)
+    parser.add_argument("--once", action="store_true", help="solve once and say nothing: for the peak of memory")
     chosen = parser.parse_args()
+    if chosen.once:
+        for case in chosen.cases:
+            ours(problem(case, chosen.peers), chosen.threads[0])
+        return
     with_peer = shutil.which("ccx") is not None
     for case in chosen.cases:
         p = problem(case, chosen.peers)
@@ -137,9 +167,7 @@ def main() -> None:
                 line += (
                     f"; ccx {b[0]:.2f} s wall, {b[1]:.2f} s CPU; ours/ccx {a[0] / b[0]:.2f} wall, {a[1] / b[1]:.2f} CPU"
                 )
-            peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-            peer = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
-            print(f"{line}; peak so far {peak:.0f} MB, ccx {peer:.0f} MB", flush=True)
+            print(line + peaks(case, chosen.peers, threads), flush=True)
 
 
 if __name__ == "__main__":

@@ -10,8 +10,10 @@ import pytest
 from typer.testing import CliRunner
 
 from zrno.pipelines import load, run
+from zrno.pipelines.build_fem import structure_problem
 from zrno.pipelines.check import check
 from zrno.pipelines.cli import app
+from zrno.translators import read
 from zrno.translators.text import InputError
 
 MESH = """$MeshFormat
@@ -139,6 +141,47 @@ def test_a_structure_that_is_not_held_is_told(scene: Path, tmp_path: Path) -> No
     ran = CliRunner().invoke(app, ["run", str(scene), "-o", str(tmp_path / "out")])
     assert ran.exit_code == 1
     assert "can move without resistance" in ran.output
+
+
+def test_a_strip_that_grows_with_its_temperature(scene: Path, tmp_path: Path) -> None:
+    """From the settings' formula through the deck: u = alpha x^2/2 of T = x above the reference 0."""
+    settings = """
+dimension: 2
+materials: {strip: {law: thermo_elastic, E: 1000, nu: 0.0, expansion: 0.01, density: 1}}
+sets:
+  clamped: {fixed: x y}
+  strip: {temperature: x}
+"""
+    folder = scene.parent
+    (folder / "strip.yaml").write_text(settings)
+    result = run([scene], output=tmp_path / "out", options={"render": []})
+    assert result["status"] == "done"
+    frame = load(tmp_path / "out").arrays()
+    place = frame["position"] - frame["displacement"]
+    along = frame["displacement"][:, 0]
+    np.testing.assert_allclose(along, 0.005 * place[:, 0] ** 2, atol=2e-4)
+    (folder / "strip.yaml").write_text(
+        settings.replace("dimension: 2", "dimension: 3").replace("1}}", "1, thickness: 0.1}}")
+    )
+    with pytest.raises(InputError, match="shell elements that expand"):
+        run([scene], output=tmp_path / "shells", options={"render": []})
+    cold = settings.replace("thermo_elastic", "elastic").replace("expansion: 0.01, ", "")
+    (folder / "strip.yaml").write_text(cold)
+    result = run([scene], output=tmp_path / "cold", options={"render": []})
+    assert any("temperatures do nothing" in warning for warning in result["warnings"])
+
+
+def test_explicit_steps_refuse_damping_by_the_stiffness(scene: Path, tmp_path: Path) -> None:
+    """It would be left out in silence."""
+    run([scene], output=tmp_path / "out", options={"render": []})
+    model = read(scene.parent / "strip.dat")
+    control = model.fem_control
+    assert control is not None
+    control.dynamic, control.integration, control.damping, control.rayleigh = 1, 3, 3, (0.1, 0.0)
+    assert structure_problem(model, "strip.dat").dynamics is not None
+    control.rayleigh = (0.1, 0.2)
+    with pytest.raises(InputError, match="damping by the stiffness in explicit steps"):
+        structure_problem(model, "strip.dat")
 
 
 def test_refusals_have_their_place(scene: Path, tmp_path: Path) -> None:

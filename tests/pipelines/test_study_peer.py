@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from zrno.pipelines import study_peer
 from zrno.pipelines.samples import copy
 from zrno.pipelines.signals import Unmeasured
 from zrno.pipelines.study import study
+from zrno.pipelines.study_plan import prepare as study_peer_plan
 
 PRINTED = """
  displacements (vx,vy,vz) for set AT and time  0.5000000E+00
@@ -49,3 +51,9 @@ def test_calculix_on_the_same_mesh(tmp_path: Path) -> None:
     assert row["message"] == ""
     assert row["value"] == pytest.approx(found["rows"][0]["value"], rel=2e-6)  # plain bricks are plain bricks
     assert (tmp_path / "out/peers.csv").exists()
+    run = next((tmp_path / "out/runs").glob("*/run.json"))
+    assert row["threads"] == json.loads(run.read_text())["threads"]
+    run.write_text('{"threads": 2}')
+    plan = study_peer_plan(tmp_path / "bar/study.yaml", options)
+    assert study_peer.threads_of(plan, tmp_path / "out", {"numbers.n": 2}) == 2
+    assert study_peer.threads_of(plan, tmp_path / "out", {"numbers.n": 3}) == 1

@@ -68,21 +68,49 @@ def test_elastoplastic_bar(tmp_path: Path) -> None:
     assert _root_force(tmp_path / "bent", 2) == pytest.approx(1285.292, rel=2e-6)  # CalculiX 2.20, C3D8, same mesh
 
 
+def _bearing(folder: Path, frame: int, cohesion: float) -> float:
+    """Load under the footing's half over its cohesion."""
+    arrays = load(folder).arrays(None, frame)
+    place = Cloud(arrays).x - arrays["displacement"]
+    under = (np.abs(place[:, 1]) < 1e-6) & (place[:, 0] < 1.0 + 1e-6)
+    return -float(arrays["reaction"][under, 1].sum()) / cohesion
+
+
 def test_strip_footing(tmp_path: Path) -> None:
     """Prandtl's c Nc, from above, on elements of four nodes with mean dilatation; it flows."""
     copy("strip_footing", tmp_path / "sample")
     options = {"numbers.linear": 1, "fem.dilatation": "mean", "output.every": 0.5, "render": []}
     result = run([tmp_path / "sample/scene.yaml"], output=tmp_path / "out", options=options)
     assert result["status"] == "done"
-    frames = load(tmp_path / "out")
-    bearing = []
-    for k in (1, 2):
-        frame = frames.arrays(None, k)
-        place = Cloud(frame).x - frame["displacement"]
-        under = (np.abs(place[:, 1]) < 1e-6) & (place[:, 0] < 1.0 + 1e-6)
-        bearing.append(-float(frame["reaction"][under, 1].sum()) / 490e3)
+    bearing = [_bearing(tmp_path / "out", k, 490e3) for k in (1, 2)]
     assert np.pi + 2 < bearing[1] < 1.03 * (np.pi + 2)
     assert bearing[1] == pytest.approx(bearing[0], rel=2e-3)
+
+
+@pytest.mark.parametrize("points", [2, 3])
+def test_strip_footing_with_friction(tmp_path: Path, points: int) -> None:
+    """Prandtl's 14.83 for phi 20, from above; with the deck's own 3 x 3 points too, which are stiffer."""
+    sample = copy("strip_footing", tmp_path / "sample")
+    settings = (sample / "friction_soil.yaml").read_text()
+    assert "points: 2}" in settings
+    (sample / "friction_soil.yaml").write_text(settings.replace("points: 2}", f"points: {points}}}"))
+    options = {"output.every": 0.5, "render": []}
+    result = run([sample / "friction.yaml"], output=tmp_path / "out", options=options)
+    assert result["status"] == "done"
+    bearing = [_bearing(tmp_path / "out", k, 490e3) for k in (1, 2)]
+    assert 14.8347 < bearing[1] < 14.8347 * (1.015 if points == 2 else 1.025)
+    assert bearing[1] == pytest.approx(bearing[0], rel=2e-3)
+
+
+@pytest.mark.slow
+def test_strip_footing_with_a_cap(tmp_path: Path) -> None:
+    """Softer than without a cap, then between the limits of associated flow and of flow without dilation."""
+    sample = copy("strip_footing", tmp_path / "sample")
+    result = run([sample / "cap.yaml"], output=tmp_path / "out", options={"output.every": 0.25, "render": []})
+    assert result["status"] == "done"
+    bearing = [_bearing(tmp_path / "out", k, 10e3) for k in (1, 2, 3, 4)]
+    assert bearing == pytest.approx([10.25, 13.13, 13.98, 14.08], rel=5e-3)
+    assert 13.0 < bearing[3] < 14.8347
 
 
 def _pressed(rate: float, end: float, steps: int) -> float:

@@ -70,7 +70,12 @@ ORTHOTROPIC = (2, 4, 10)  # models with material axes: their groups of solids ha
 _RAW_CARDS = {8: 2, 10: 5, 28: 3, 44: 2, 56: 3, 61: 2}  # models of which the number of cards is all that is known here
 _TABLES = {3: 3, 4: 12}  # thermo-elastic: tables, after which a reference temperature stands
 MODELS = sorted({*FIXED, *_PLASTIC, *_RAW_CARDS, *_TABLES, 9, 20})
-OF_LAW = {"von_mises": 5, "von_mises_power": 6} | {row.law: model for model, row in reversed(FIXED.items())}
+WARM = 3
+_WARM_TABLES = ("E", "nu", "expansion")
+_WARM_PAIR = Layout("2e10.0", "T value")
+_REFERENCE = Layout("7e10.0", "TREF a_2 a_3 a_4 a_5 a_6 a_7")
+OF_LAW = {row.law: model for model, row in reversed(FIXED.items())}
+OF_LAW |= {"thermo_elastic": WARM, "von_mises": 5, "von_mises_power": 6}
 
 
 def read_law(cards: Cards, material: Material, model: int, points: int, warn: Callable[[str], None]) -> None:
@@ -79,6 +84,8 @@ def read_law(cards: Cards, material: Material, model: int, points: int, warn: Ca
         _read_fixed(cards, material, model)
     elif model in _PLASTIC:
         _read_plastic(cards, material, model, warn)
+    elif model == WARM:
+        _read_warm(cards, material)
     else:
         material.law = ""
         material.native["cards"] = [line.whole().rstrip() for line in _raw_cards(cards, model)]
@@ -142,6 +149,30 @@ def _read_plastic(cards: Cards, material: Material, model: int, warn: Callable[[
     material.parameters |= {"Cy": stress["CY"], "n": power["AN"], "M": power["EM"]}
     if stress["DUM"]:
         warn("a third number on the card of yield stress: PAK takes the law of Simo, of which we know no formula")
+
+
+def _read_warm(cards: Cards, material: Material) -> None:
+    """Tables of E, nu and expansion over temperature, and the reference. Only constants make a law with a name here."""
+    what = f"a card of material model {WARM}"
+    lines: list[str] = []
+    values = {}
+    for name in _WARM_TABLES:
+        head = cards.card(_COUNT, what)
+        head.check("NTFUN", 0 < head["NTFUN"] <= cards.left, "no such number of points", "as many as follow")
+        cards.faults.stop()
+        block = cards.block(_WARM_PAIR, head["NTFUN"], what)
+        cards.faults.stop()
+        lines += [head.block.whole().rstrip(), *(block.whole(i).rstrip() for i in range(head["NTFUN"]))]
+        values[name] = np.unique(block["value"])
+        material.native["NTFUN"] = max(material.native.get("NTFUN", 1), head["NTFUN"])
+    last = cards.card(_REFERENCE, what)
+    material.native["cards"] = [*lines, last.block.whole().rstrip()]
+    material.law = ""
+    if all(len(own) == 1 for own in values.values()):
+        material.law = "thermo_elastic"
+        material.parameters = {name: float(own[0]) for name, own in values.items()}
+        material.parameters["reference_temperature"] = last["TREF"]
+        material.native["said"] = dict(material.parameters)
 
 
 def _raw_cards(cards: Cards, model: int) -> Iterator[Block]:
@@ -212,12 +243,18 @@ def law_rows(material: Material, model: int, report: Report) -> Iterator[tuple[L
         yield from material.native["cards"]
         return
     p, native = dict(material.parameters), material.native
+    if model == WARM and native.get("said") == p:
+        yield from native["cards"]
+        return
     tables = dict(material.tables)
     what = f"material {material.id} {material.name}".strip()
     if model in _PLASTIC:
         yield from _plastic_rows(material, model, p, what)
         said = {"E", "nu", "yield_stress", "tangent_modulus", "beta", "Cy", "n", "M"}
         tables.pop("hardening", None)
+    elif model == WARM:
+        yield from _warm_rows(p, what)
+        said = {*_WARM_TABLES, "reference_temperature"}
     else:
         row = FIXED[model]
         said = set(row.names.values())
@@ -272,6 +309,15 @@ def _plastic_rows(
         power = {"CY": p.get("Cy", 0.0), "AN": p.get("n", 1.0), "EM": p.get("M", 1.0)}
     yield _YIELD, {**spare, "TAUY": yield_stress, "CY": power["CY"]}
     yield _POWER, {**spare, "AN": power["AN"], "EM": power["EM"]}
+
+
+def _warm_rows(p: dict[str, float], what: str) -> Iterator[tuple[Layout, dict[str, Any]]]:
+    """Tables of one value each: at two temperatures, so that PAK has something to interpolate between."""
+    for name in _WARM_TABLES:
+        yield _COUNT, {"NTFUN": 2, "INDEP": 0}
+        for temperature in (-1e5, 1e5):
+            yield _WARM_PAIR, {"T": temperature, "value": _given(p, name, what)}
+    yield _REFERENCE, {"TREF": p.get("reference_temperature", 0.0)}
 
 
 def _given(p: dict[str, float], name: str, what: str) -> float:

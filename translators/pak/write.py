@@ -16,7 +16,7 @@ from zrno.translators.lost import report_lost
 from zrno.translators.model import Ints, Model
 from zrno.translators.pak import cards as layouts
 from zrno.translators.pak.control import control_rows
-from zrno.translators.pak.laws import law_rows
+from zrno.translators.pak.laws import WARM, law_rows
 from zrno.translators.pak.plan import plan_groups, plan_materials
 from zrno.translators.pak.write_elements import ElementWriter, heading
 from zrno.translators.pak.write_loads import LoadWriter
@@ -162,7 +162,7 @@ class _Writer:
     def _materials(self) -> Iterator[bytes]:
         yield _joined([heading(layouts.MODEL, "/11/")])
         for law, materials in self.materials.models.items():
-            points = max(int(m.native.get("NTFUN", 1)) for m in materials)
+            points = max(int(m.native.get("NTFUN", 2 if law == WARM else 1)) for m in materials)
             values = {"MODEL": law, "materials": len(materials), "points": points + 2}
             yield _joined([self.text.line(layouts.MODEL, values, "card /11/")])
         for law, materials in self.materials.models.items():

@@ -88,6 +88,8 @@ class ElementWriter:
             values |= {"NGAUSX": 3, "NGAUSY": 3, "NGAUSZ": 3}
         if quadratic and group.netip in (2, 8):
             values |= {"NGAUSX": 3, "NGAUSY": 3}
+        if "points" in native and group.netip in (2, 3) and not group.collapsed:
+            values |= dict.fromkeys(("NGAUSX", "NGAUSY", "NGAUSZ"), native["points"])
         if kind.family == "shell" and group.law > 2:
             values["NGAUSZ"] = _PLASTIC_POINTS
         values |= native

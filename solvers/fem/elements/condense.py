@@ -2,18 +2,29 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ...jit import kernel
+
+LEAST = 1e-9  # a pivot over what it was: less is round-off
 
 
 @kernel
 def condense(inner, residual, mixed, back, modes, c, n, q, matrix, forces, answer, rest):
-    """Gauss elimination of the enhanced parameters; pivots stand on the diagonal, as stiffness is."""
+    """Gauss elimination of the enhanced parameters; pivots stand on the diagonal, as stiffness is.
+
+    Where one has no stiffness left, `rest` is not a number. residual: is written over.
+    """
     for m in range(modes):
         rest[q, m] = residual[m]
+        residual[m] = LEAST * abs(inner[m, m])
         for i in range(c):
             for k in range(n):
                 answer[q, m, i, k] = mixed[m, i, k]
     for p in range(modes):
+        if abs(inner[p, p]) <= residual[p]:
+            rest[q, p] = np.nan
+            inner[p, p] = residual[p] if residual[p] > 0.0 else 1.0
         pivot = 1.0 / inner[p, p]
         for m in range(p + 1, modes):
             factor = inner[m, p] * pivot

@@ -58,6 +58,8 @@ class ContinuumGroup:
         self._forces = np.empty((some, c, k))
         self._modulus = np.empty((some * points, 6, 6))
         self._scratch, self._kept = np.empty((self.rows, 2)), np.empty(self.rows)
+        self.warmth = np.zeros(m if elements.expansion else 0)  # committed strain by temperature, in all directions
+        self._warm: Floats | None = None  # at the step's end, of a run with temperatures
         self.small = elements.geometry == SMALL
         self._plain = self.small and elements.kind == "hex8" and not elements.mean and not modes
         self._finite = None if elements.geometry in (SMALL, UPDATED) else True
@@ -69,6 +71,11 @@ class ContinuumGroup:
         self._offsets = structure.offsets(self.nodes)
 
     # state
+
+    def warm(self, temperature: Floats) -> None:
+        """What the nodes' temperatures (n,) at the step's end make the points grow by."""
+        above = (temperature - self.elements.reference)[self.nodes]
+        self._warm = self.elements.expansion * (above @ self._values.T).ravel()
 
     def evaluate(self, shape: Shape, before: Shape, dt: float, sink: Sink) -> None:
         self._evaluate(shape.u, before.u, dt, sink)
@@ -116,12 +123,18 @@ class ContinuumGroup:
             self._turn(nodes, middle, u, before, rows)
         old = self._turned[rows]
         modulus = self._modulus[: (hi - lo) * g]
+        whole = strain
+        if self._warm is not None:  # laws see what is left of the strain
+            strain = whole.copy()
+            strain[:, :3] -= (self._warm[rows] - self.warmth[rows])[:, None]
         if el.plane == "stress":
             advance_plane_stress(el.law, strain, old, self.trial[rows], self._history, lo * g, el.density, dt,
                                  self._work[rows], self._scratch, modulus, self._kept)  # fmt: skip
         else:
             advance(el.law, strain, old, self.trial[rows], self._history, lo * g, el.density, dt, self._work[rows],
                     self._scratch, modulus if sink.stiff else None)  # fmt: skip
+        if self._warm is not None and el.plane == "stress":
+            whole[:, 2] = strain[:, 2] + self._warm[rows] - self.warmth[rows]
         forces, matrix = self._forces[: hi - lo], self._matrix[: hi - lo] if sink.stiff else None
         if self._plain:
             hex8.integrate(nodes, places, self._slopes, t.weights, self.trial[rows], modulus, matrix, forces)
@@ -133,6 +146,10 @@ class ContinuumGroup:
             self.thickness[lo:hi], self._finite, None if self.small else True, mean, self.modes, self.trial[rows],
             modulus, matrix, forces, answer, rest,
         )  # fmt: skip
+        if matrix is not None and rest is not None and np.isnan(rest).any():
+            bad = int(np.argmax(np.isnan(rest).any(axis=1)))
+            raise Bad(int(el.ids[lo + bad]), "its enhanced strains have no stiffness left, as where all of it flows "
+                      "without hardening; its mean dilatation (fem.dilatation mean) carries that")  # fmt: skip
         sink.add(nodes, self.dofs, self._offsets[lo:hi], forces, matrix)
 
     def _turn(self, nodes: Any, middle: Floats, u: Floats, before: Floats, rows: slice) -> None:
@@ -147,6 +164,8 @@ class ContinuumGroup:
         self.strain += self._strain_step
         self.dissipated += self._work
         self.alpha[:] = self._alpha
+        if self._warm is not None:
+            self.warmth[:] = self._warm
 
     # what it has
 
@@ -213,8 +232,9 @@ class ContinuumGroup:
         self._assembled = None
 
     def state(self) -> dict[str, Floats]:
+        warm = {"warmth": self.warmth} if len(self.warmth) else {}
         return {"stress": self.stress, "strain": self.strain, "history": self.history, "alpha": self.alpha,
-                "energy": self.energy, "dissipated": self.dissipated}  # fmt: skip
+                "energy": self.energy, "dissipated": self.dissipated, **warm}  # fmt: skip
 
     def restore(self, data: dict[str, Floats]) -> None:
         for name, own in self.state().items():

@@ -13,6 +13,7 @@ from fem_meshes import bricks, group, held, loaded, moved, plane, problem, quads
 
 from zrno.solvers import fem
 from zrno.solvers import materials as laws
+from zrno.solvers.errors import Diverged
 from zrno.solvers.fem.assembly import Assembly
 from zrno.solvers.fem.elements import shapes
 from zrno.solvers.fem.equilibrium import Target, equilibrium
@@ -287,6 +288,13 @@ def test_prandtls_collapse(name: str, shared: Path) -> None:
     load = _footing("quad8", law, 5, 10, 12, 0.02 if phi == 0.0 else 0.1, gauss=(2, 2))
     assert load[-1] == pytest.approx(load[-4], rel=1e-3)  # it flows
     assert wanted < load[-1] < 1.03 * wanted
+
+
+@pytest.mark.slow
+def test_enhanced_strains_without_stiffness_say_so() -> None:
+    """Where whole elements flow without hardening enhanced strains carry nothing: the run stops and says what does."""
+    with pytest.raises(Diverged, match=r"enhanced strains have no stiffness left.*fem\.dilatation mean"):
+        _footing("quad4", laws.von_mises(E_SOIL, 0.48, math.sqrt(3.0)), 4, 9, 11, 0.02, modes=4)
 
 
 @pytest.mark.slow

@@ -49,3 +49,19 @@ def test_a_plane_holds_a_block_and_does_not_pull() -> None:
     assert solver.assembly.stops.force(solver.shape.u)[1] == pytest.approx(1.0, rel=1e-4)  # type: ignore[union-attr]
     pulled, _ = solve(problem(x, (elements, spring), fixed, nodal_loads=(loaded(top, 1, 1e-6),), stops=stop))
     assert moved(pulled, number[2, 0], 1) == pytest.approx(1e-3, rel=1e-2)  # only the spring holds it
+
+
+def test_planes_do_not_damp() -> None:
+    """A block that flies to a plane, with Rayleigh's damping by stiffness: nothing slows it on the way, and Newton's
+    matrix is the derivative: few iterations once it presses."""
+    x, nodes, number = quads(2, 2, lambda r, s: np.stack([r, 0.1 + s, 0 * r], -1))
+    fixed = held(len(x), (slice(None), "z"), (number[0], "x"))
+    elements = group("quad4", "plane", nodes, Elastic.from_engineering(1e3, 0.0), plane="strain", density=1.0)
+    velocity = np.zeros((len(x), 6))
+    velocity[:, 1] = -1.0
+    p = problem(x, elements, fixed, velocity=velocity, stops=(fem.Stop((0, 0, 0), (0, 1, 0)),), steps=((120, 1e-3),),
+                dynamics=fem.Dynamics(stiffness_damping=1e-3))  # fmt: skip
+    solver, seen = solve(p, lambda s: (s.iterations, moved(s, number[1, 1], 1)))
+    np.testing.assert_allclose([u for _, u in seen[:95]], -1e-3 * np.arange(1, 96), rtol=1e-9)
+    assert solver.assembly.stops.force(solver.shape.u)[1] > 0.0  # type: ignore[union-attr]
+    assert np.diff([i for i, _ in seen[99:]]).max() <= 3

@@ -30,6 +30,8 @@ LAWS = {
     "rock": sand(soil=False),
     "flat rock": sand(ratio=0.0, soil=False),
     "with tension": sand(tension=-0.1),
+    "with tension and its shear": sand(tension=-0.1, soil=False)._replace(keeps_shear=True),
+    "cut at the apex": sand(tension=-9.0)._replace(keeps_shear=True),
     "Drucker-Prager": sand(gamma=0.0, decay=0.0, theta=0.2, k=0.1),
     "cohesionless": sand(k=0.18, hardening=SAND._replace(first=0.0)),
     "cohesionless cone": sand(k=0.0, gamma=0.0, theta=0.25, hardening=SAND._replace(first=0.0)),

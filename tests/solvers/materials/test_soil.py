@@ -10,7 +10,15 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from zrno.solvers.materials import OPEN, drucker_prager, drucker_prager_soil, mohr_coulomb
+from zrno.solvers.materials import (
+    OPEN,
+    CapHardening,
+    cap,
+    continuous,
+    drucker_prager,
+    drucker_prager_soil,
+    mohr_coulomb,
+)
 from zrno.solvers.materials.drucker_prager import cone
 from zrno.solvers.materials.mohr_coulomb import mohr_coulomb_return
 from zrno.solvers.materials.point import Point, drive
@@ -75,6 +83,48 @@ def test_tension_cut_offs() -> None:
     pull[:, 1:3] = 0.0
     stress = drive(mohr_coulomb(E, NU, 1.0, 30.0, tension=0.5), pull).stress[-1]
     assert stress[0] == pytest.approx(0.5)
+
+
+CUT: dict[str, tuple[Any, float]] = {
+    "cone": (drucker_prager(E, NU, 1.0, 0.2, tension=-0.6), -0.6),
+    "cone to its apex": (drucker_prager(E, NU, 1.0, 0.2, tension=-9.0), -5.0),
+    "cap": (cap(E, 400.0, 1.0, theta=0.2, ratio=2.0, hardening=CapHardening(0.05, 0.1, 5.0), tension=-0.6), -0.6),
+    "rock to its apex": (
+        cap(E, 400.0, 1.0, theta=0.2, ratio=2.0, hardening=CapHardening(0.05, 0.1, 5.0), tension=-9.0, soil=False),
+        -5.0,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CUT)
+def test_a_cut_off_that_keeps_shear_is_continuous(name: str, invariants: Callable) -> None:
+    """Strains from zero along lines into tension end on stresses along a path without jumps; else the cut-off jumps
+    by the strength at T.
+
+    Beyond T by tension alone the shear stays what it was.
+    """
+    sharp, least = CUT[name]
+    law = continuous(sharp)
+    rng = np.random.default_rng(3)
+    lines = np.repeat(rng.normal(size=(10, 1, 6)) * 0.004, 1000, axis=1)
+    lines[:, :, :3] += np.linspace(-0.002, 0.01, 1000)[:, None]
+
+    def jumps(law: Any) -> tuple[float, Any]:
+        """The worst change of stress over that of strain, in elastic stiffnesses; stresses."""
+        ends = np.array([[drive(law, e[None]).stress[-1] for e in line] for line in lines])
+        changed, moved = np.abs(np.diff(ends, axis=1)).max(), np.abs(np.diff(lines, axis=1)).max()
+        return float(changed / moved) / (E + 4.0 / 3.0 * 400.0), ends.reshape(-1, 6)
+
+    worst, stress = jumps(law)
+    assert worst < 5.0
+    assert jumps(sharp)[0] > 10.0
+    first, _ = invariants(stress)
+    assert first.min() == pytest.approx(least, rel=1e-12)
+    sheared = np.zeros((2, 6))
+    sheared[0, 3], sheared[1, :3] = 0.0004, 0.002
+    path = drive(law, sheared).stress
+    assert path[1, 3] == pytest.approx(path[0, 3] if least > -1.0 else 0.0, abs=1e-12)
+    assert drive(sharp, sheared).stress[1, 3] == 0.0
 
 
 def test_grain_that_has_opened_closes_before_it_bears() -> None:
@@ -164,6 +214,7 @@ CONES = {
     "cohesionless": drucker_prager_soil(E, NU, 0.0, 30.0, 0.0),
     "associated": drucker_prager(E, NU, 1.0, 0.3),
     "cut": drucker_prager(E, NU, 1.0, 0.3, tension=0.0),
+    "cut, with shear": continuous(drucker_prager(E, NU, 1.0, 0.3, tension=-0.5)),
     "von Mises": drucker_prager(E, NU, 1.0, 0.0),
 }
 HEXAGONS = {

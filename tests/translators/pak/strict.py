@@ -152,6 +152,12 @@ def _material(r: Reader, deck: Deck, law: int) -> None:
         if law == 6:
             r.card(*seven)
         return
+    if law == 3:
+        for _ in range(3):
+            for _ in range(int(r.card("i5", "i5")[0])):
+                r.card("f10.0", "f10.0")
+        r.card(*seven)
+        return
     for _ in range({8: 2, 10: 5, 28: 3, 44: 2, 56: 3, 61: 2, 9: 2}[law]):
         r.text()
 

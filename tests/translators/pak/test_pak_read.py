@@ -252,6 +252,36 @@ def test_models_kept_as_they_are(deck, tmp_path: Path) -> None:
         assert own in (tmp_path / "b.dat").read_text()
 
 
+def test_expansion_by_temperature(deck, tmp_path: Path) -> None:
+    """Tables of constants are the law thermo_elastic; its own cards are written back, or new ones where it changed."""
+    old = "    1    1    3\n    1    1       7.8\n     200.0\n       0.3\n    3    2    0    1"
+    own = (
+        "    1\n       0.0     200.0\n    2\n       0.0       0.3\n      10.0       0.3\n    1\n       0.0      1E-5\n"
+        "      20.0\n"
+    )
+    loads = "    0    0    0    0         0    2    0    0    0\n    1    1      50.0    0\n    2    1      60.0    0\n"
+    m = read(deck((old, f"    3    1    3\n    3    1       7.8\n{own}    3    2    1    3"), loads=loads))
+    wanted = {"E": 200.0, "nu": 0.3, "expansion": 1e-5, "reference_temperature": 20.0}
+    assert (m.materials[1].law, m.materials[1].parameters) == ("thermo_elastic", wanted)
+    warm = m.nodal_loads[0]
+    assert (warm.kind, warm.nodes.tolist(), warm.values.tolist()) == ("temperature", [0, 1], [50.0, 60.0])
+    write(m, tmp_path / "b.dat")
+    assert own in (tmp_path / "b.dat").read_text()
+    m.materials[1].parameters["expansion"] = 2e-5
+    write(m, tmp_path / "c.dat")
+    again = read(tmp_path / "c.dat")
+    assert (again.materials[1].law, again.materials[1].parameters) == ("thermo_elastic", wanted | {"expansion": 2e-5})
+    assert again.nodal_loads[0].values.tolist() == [50.0, 60.0]
+
+
+@pytest.mark.parametrize("count", ["-1", "0", "99999"])
+def test_tables_of_temperature_with_hostile_counts(deck, count: str) -> None:
+    old = "    1    1    3\n    1    1       7.8\n     200.0\n       0.3\n    3    2    0    1"
+    own = f"{count:>5}\n       0.0     200.0\n    1\n       0.0       0.3\n    1\n       0.0      1E-5\n      20.0\n"
+    with pytest.raises(InputError, match="number of points"):
+        read(deck((old, f"    3    1    3\n    3    1       7.8\n{own}    3    2    1    3")))
+
+
 def test_a_table_of_stress_and_strain(deck, tmp_path: Path, same) -> None:
     old = "    1    1    3\n    1    1       7.8\n     200.0\n       0.3\n    3    2    0    1"
     points = "     0.005       1.0\n      0.02       1.5\n      0.03       1.6\n"

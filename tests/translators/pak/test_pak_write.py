@@ -168,6 +168,7 @@ def test_tetrahedra_have_one_point_and_wedges_no_incompatible_modes(tmp_path: Pa
     ("law", "parameters", "model", "tables"),
     [
         ("elastic", {"E": 200.0, "nu": 0.3}, 1, 0),
+        ("thermo_elastic", {"E": 200.0, "nu": 0.3, "expansion": 1.5e-5, "reference_temperature": 20.0}, 3, 3),
         ("orthotropic", dict(zip("Ex Ey Ez nu_xy nu_yz nu_zx Gxy Gyz Gzx".split(),  # noqa: SIM905
                                  [1.0, 2.0, 3.0, 0.1, 0.2, 0.3, 4.0, 5.0, 6.0], strict=True)), 2, 0),
         ("von_mises", {"E": 200.0, "nu": 0.3, "yield_stress": 0.2, "tangent_modulus": 2.0, "beta": 1.0}, 5, 0),
