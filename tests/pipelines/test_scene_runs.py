@@ -62,6 +62,7 @@ def _scene(folder: Path, mesh: str, settings: str, scene: str) -> Path:
     return folder / "scene.yaml"
 
 
+@pytest.mark.slow
 def test_local_steps_through_a_whole_scene(tmp_path: Path) -> None:
     scene = _scene(tmp_path, MESH, SETTINGS, SCENE)
     result = run([scene], output=tmp_path / "out")

@@ -38,6 +38,7 @@ def swings(folder: Path, spacing: float, end: float) -> tuple[float, float, floa
     return period(found.times, places), loss(found.times, places), said["energy"]["balance_error"]
 
 
+@pytest.mark.slow
 def test_the_period_converges_to_that_of_a_thick_plate(folder: Path) -> None:
     coarse, fine = (swings(folder, 0.02 / layers, 0.6)[0] / EXACT.thick_period() - 1.0 for layers in (4, 6))
     assert 0.0 < fine < 0.055

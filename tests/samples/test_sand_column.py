@@ -65,6 +65,7 @@ def test_the_run_out_hardly_depends_on_the_spacing(folder: Path, spacings: tuple
     assert centres[1] == pytest.approx(centres[0], rel=0.015)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("gaps", [True, False])
 def test_the_density_of_grain_does_not_drift(folder: Path, gaps: bool) -> None:
     """It follows the pressure, 0.4 % at the foot; but for grain that has opened. Without gaps it ratchets down."""

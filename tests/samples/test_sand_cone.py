@@ -12,6 +12,7 @@ from zrno.pipelines.measures import Cloud, radius
 from zrno.pipelines.samples import copy
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("spacing", [0.0125, pytest.param(0.01, marks=pytest.mark.slow)])
 def test_the_cylinder_spreads_as_far_as_in_experiments_and_lies_below_its_friction_angle(
     tmp_path: Path, spacing: float

@@ -37,6 +37,7 @@ def clumped(folder: Path, scene: str) -> int:
     return int(np.sum(near[:, 1] < 0.6 * SPACING))
 
 
+@pytest.mark.slow
 def test_cohesive_soil_clumps_without_the_cure_and_does_not_with_it(folder: Path) -> None:
     assert clumped(folder, "scene.yaml") < 5
     assert clumped(folder, "plain.yaml") > 20

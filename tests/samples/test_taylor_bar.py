@@ -49,6 +49,7 @@ def check(folder: Path, length: float, wide: float, strain: float, said: dict[st
     assert said["energy"]["balance_error"] < 0.01
 
 
+@pytest.mark.slow
 def test_the_rod_is_as_short_and_as_wide_as_in_the_literature(folder: Path) -> None:
     check(folder, *impact(folder, 5))
 
