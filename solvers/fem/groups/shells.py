@@ -182,7 +182,7 @@ class ShellGroup:
         tensor = np.empty((e, g, layers, 3, 3))
         for k, (i, j) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))):
             tensor[..., i, j] = tensor[..., j, i] = s[..., k]
-        out = np.einsum("egai,eglab,egbj->eglij", frames, tensor, frames)
+        out = np.swapaxes(frames, 2, 3)[:, :, None] @ tensor @ frames[:, :, None]
         return np.stack([out[..., i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))], axis=-1)
 
     def _faces(self) -> Floats:
