@@ -33,7 +33,7 @@ def gradients(problem: Problem, slope: np.ndarray) -> np.ndarray:
     return np.array(a.gradient[:, :n].T.reshape(n, d, d))
 
 
-@pytest.mark.parametrize("shape", [(9, 9), (5, 5, 5)])
+@pytest.mark.parametrize("shape", [pytest.param((9, 9), marks=pytest.mark.slow), (5, 5, 5)])
 def test_corrected_gradients_of_linear_fields_are_exact_in_disorder_and_at_free_surfaces(
     shape: tuple[int, ...],
 ) -> None:
@@ -99,8 +99,17 @@ def test_ten_turns_leave_no_stress_with_the_correction() -> None:
     assert np.abs(wrong).max() > 0.1
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
-@pytest.mark.parametrize("cures", [Cures(correction=True), Cures(artificial_stress=0.3), Cures(True, 0.3, 0.2)])
+@pytest.mark.parametrize(
+    ("cures", "dimension"),
+    [
+        (Cures(correction=True), 2),
+        (Cures(True, 0.3, 0.2), 3),
+        *(pytest.param(*case, marks=pytest.mark.slow) for case in (
+            (Cures(correction=True), 3), (Cures(artificial_stress=0.3), 2), (Cures(artificial_stress=0.3), 3),
+            (Cures(True, 0.3, 0.2), 2),
+        )),
+    ],
+)  # fmt: skip
 def test_cures_keep_momentum_and_energy(dimension: int, cures: Cures) -> None:
     solver = finished(impact(dimension, step_factor=0.2, cures=cures), 2.0)
     row = solver.history()
@@ -224,7 +233,7 @@ def test_stress_diffusion_smooths_stripes_and_keeps_the_mean() -> None:
     assert means == pytest.approx([0.0, 0.0], abs=1e-12)
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", [2, pytest.param(3, marks=pytest.mark.slow)])
 def test_stress_diffusion_leaves_grain_at_rest_on_a_plane_alone(dimension: int) -> None:
     """Vertical stress rho g z, half of it sideways; up to the free surface, and to the plane with its images."""
     x = lattice((8, 10, 5)[:dimension], (0.0,) * dimension)
@@ -241,7 +250,7 @@ def test_stress_diffusion_leaves_grain_at_rest_on_a_plane_alone(dimension: int) 
 
 
 @pytest.mark.parametrize("correction", [False, True])
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", [2, pytest.param(3, marks=pytest.mark.slow)])
 def test_a_wall_bears_the_stress_of_what_lies_on_it(dimension: int, correction: bool) -> None:
     """rho g z goes on into the wall, shear as it is, and the wall keeps its density."""
     x = lattice((8, 10, 5)[:dimension], (0.0,) * dimension)

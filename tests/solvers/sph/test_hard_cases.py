@@ -124,7 +124,7 @@ def test_a_step_past_the_limit_is_caught(factor: float) -> None:
     assert solver.energy_report()["balance_error"] < (0.02 if factor <= 0.8 else 0.1)
 
 
-@pytest.mark.parametrize("option", [1, 2])
+@pytest.mark.parametrize("option", [pytest.param(1, marks=pytest.mark.slow), 2])
 def test_a_smoothing_length_that_grows_threefold(option: int) -> None:
     """A body flies apart: h follows the density to 5 %, and a list that is far too large changes nothing."""
     soft = Elastic.from_engineering(1e-6, 0.3)

@@ -74,7 +74,7 @@ def impose(s: Solver, x: np.ndarray, dt: float = 1.0) -> None:
     lagrangian.internal_force(0, n, z, None, s._reference, a, s._numbers)
 
 
-@pytest.mark.parametrize("dimension", [1, 2, 3])
+@pytest.mark.parametrize("dimension", [pytest.param(1, marks=pytest.mark.slow), 2, 3])
 def test_a_linear_field_is_exact_and_meets_no_hourglass_control(dimension: int) -> None:
     problem = irregular(dimension)
     s = Solver(dataclasses.replace(problem, bodies=(dataclasses.replace(BODY, law=Elastic(1e-20, 1e-20)),)))
@@ -478,7 +478,7 @@ def folded(dimension: int, whole: bool) -> Solver:
     return Solver(block((n,) * dimension, x=x, v=v, bodies=(body,), planes=() if whole else planes, step_factor=0.5))
 
 
-@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("dimension", [2, pytest.param(3, marks=pytest.mark.slow)])
 def test_symmetry_planes_are_the_other_half(dimension: int) -> None:
     """Edges and corners, where images have images, among them."""
     part, all_of_it = folded(dimension, whole=False), folded(dimension, whole=True)
