@@ -6,48 +6,18 @@ import math
 from pathlib import Path
 from typing import Any
 
+import fem_cases as cases
 import numpy as np
 import pytest
-from fem_meshes import bricks, eight, group, held, line_load, loaded, moved, nine, problem, quads, ramp, shell, solve
+from fem_meshes import eight, group, held, loaded, moved, nine, problem, quads, ramp, shell, solve
 
 from zrno.solvers import fem
 from zrno.solvers.materials import Elastic
 
 
-def _octant(n: int, radius: float, mesh: Any) -> tuple[np.ndarray, np.ndarray]:
-    """A sphere's octant by three patches of n x n elements that meet where x = y = z."""
-    patches, nodes, count = [], [], 0
-    for k in range(3):
-        a, b, c = (np.eye(3)[(k + i) % 3] for i in range(3))
-        quad = np.array([a, (a + b) / 2, (a + b + c) / 3, (a + c) / 2])
-
-        def place(r: np.ndarray, s: np.ndarray, quad: np.ndarray = quad) -> np.ndarray:
-            p = np.stack([(1 - r) * (1 - s), r * (1 - s), r * s, (1 - r) * s], -1) @ quad
-            return radius * p / np.linalg.norm(p, axis=1, keepdims=True)
-
-        x, own, _ = mesh(n, n, place)
-        patches.append(x)
-        nodes.append(own + count)
-        count += len(x)
-    x = np.concatenate(patches)
-    _, first, inverse = np.unique(np.round(x / radius, 9) + 0.0, axis=0, return_index=True, return_inverse=True)
-    return x[first], inverse.ravel()[np.concatenate(nodes)]
-
-
-def _at(x: np.ndarray, *place: float) -> int:
-    return int(np.argmin(np.linalg.norm(x - place, axis=1)))
-
-
 @pytest.mark.parametrize(("mesh", "n", "share"), [(quads, 16, 0.9978), (nine, 8, 0.9992)])
 def test_le3_a_hemisphere_with_point_loads(mesh: Any, n: int, share: float) -> None:
-    """Without a hole: 2 kN outward at A and inward at C, the top held along z; ux at A is 0.185."""
-    x, nodes = _octant(n, 10.0, mesh)
-    elements = shell(nodes, 0.04, Elastic.from_engineering(68.25e9, 0.3))
-    on = np.abs(x) < 1e-9
-    fixed = held(len(x), (on[:, 1], "yac"), (on[:, 0], "xbc"), ([_at(x, 0, 0, 10)], "z"))
-    a, c = _at(x, 10, 0, 0), _at(x, 0, 10, 0)
-    solver, _ = solve(problem(x, elements, fixed, nodal_loads=(loaded(a, 0, 2e3), loaded(c, 1, -2e3))))
-    assert moved(solver, a, 0) / 0.185 == pytest.approx(share, abs=0.001)
+    assert cases.full_hemisphere(n, mesh)[0] / 0.185 == pytest.approx(share, abs=0.001)
 
 
 def test_fv32_a_tapered_membrane() -> None:
@@ -63,27 +33,13 @@ def test_fv32_a_tapered_membrane() -> None:
 
 @pytest.mark.parametrize(("cuts", "share"), [((6, 1, 1), 0.839), ((24, 8, 4), 0.974)])
 def test_sc4_a_straight_cantilever_twists(cuts: tuple[int, int, int], share: float) -> None:
-    """Of Saint-Venant's 0.03411, by enhanced bricks: the warping of the section wants more than one of them.
-
-    The clamped end, which cannot warp, is 1.5 % stiffer than Saint-Venant's bar.
-    """
-    x, nodes, number = bricks(*cuts, (6.0, 0.2, 0.1))
-    x = x - [0.0, 0.1, 0.05]
-    elements = group("hex8", "solid", nodes, Elastic.from_engineering(1e7, 0.3), modes=12)
-    tip = number[-1].ravel()
-    arm = np.stack([-x[tip, 2], x[tip, 1]], 1) / (x[tip, 1:] ** 2).sum()
-    couple = fem.NodalLoad(np.repeat(tip, 2), np.tile([1, 2], len(tip)), arm.ravel())
-    solver, _ = solve(problem(x, elements, held(len(x), (number[0], "xyz")), nodal_loads=(couple,)))
-    assert (arm * solver.shape.u[tip, 1:3]).sum() / 0.03411 == pytest.approx(share, abs=0.005)
+    """The warping of the section wants more than one brick."""
+    assert cases.twist_of_bricks(cuts)[0] / 0.03411 == pytest.approx(share, abs=0.005)
 
 
 def test_sc4_by_shells() -> None:
     """The section is twice as wide as thick: shells are 1.6 % off with 12 x 2 elements."""
-    x, nodes, number = nine(12, 2, lambda r, s: np.stack([6 * r, 0.2 * (s - 0.5), 0 * r], -1))
-    elements = shell(nodes, 0.1, Elastic.from_engineering(1e7, 0.3))
-    p = problem(x, elements, held(len(x), (number[0], "xyzabc")), nodal_loads=(line_load(number[-1], 3, 1.0),))
-    solver, _ = solve(p)
-    assert moved(solver, number[-1, 2], 3) / 0.03411 == pytest.approx(0.984, abs=0.004)
+    assert cases.twist_of_shells(12)[0] / 0.03411 == pytest.approx(0.984, abs=0.004)
 
 
 @pytest.mark.parametrize(("mesh", "n"), [(quads, 16), (nine, 8)])

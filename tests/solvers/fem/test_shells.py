@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import fem_cases as cases
 import numpy as np
 import pytest
 from fem_meshes import group, held, loaded, moved, problem, quads, ramp, shell, solve
@@ -141,39 +142,17 @@ def test_turning_a_shell_leaves_no_stress() -> None:
 
 @pytest.mark.parametrize(("modes", "share"), [(0, 0.9891), (4, 0.9978)])
 def test_scordelis_lo_roof(modes: int, share: float) -> None:
-    bend = math.radians(40)
-    x, nodes, number = quads(16, 16, lambda r, s: np.stack([25 * np.sin(bend * r), 25 * s, 25 * np.cos(bend * r)], -1))
-    fixed = held(len(x), (number[:, 0], "xz"), (number[:, -1], "yac"), (number[0], "xbc"))
-    elements = shell(nodes, 0.25, Elastic.from_engineering(4.32e8, 0.0), density=360.0, modes=modes)
-    weight = fem.BodyLoad(np.array([0.0, 0.0, -1.0]))
-    solver, _ = solve(problem(x, elements, fixed, body_loads=(weight,)))
-    assert -moved(solver, number[-1, -1], 2) / 0.3024 == pytest.approx(share, abs=0.003)
+    assert cases.roof(16, modes)[0] / 0.3024 == pytest.approx(share, abs=0.003)
 
 
 @pytest.mark.parametrize(("modes", "share"), [(0, 0.9281), (4, 0.9315)])
 def test_pinched_cylinder(modes: int, share: float) -> None:
-    x, nodes, number = quads(
-        16, 16, lambda r, s: np.stack([300 * np.sin(0.5 * np.pi * r), 300 * s, 300 * np.cos(0.5 * np.pi * r)], -1)
-    )
-    fixed = held(len(x), (number[:, 0], "xz"), (number[:, -1], "yac"), (number[0], "xbc"), (number[-1], "zab"))
-    elements = shell(nodes, 3.0, Elastic.from_engineering(3e6, 0.3), modes=modes)
-    solver, _ = solve(problem(x, elements, fixed, nodal_loads=(loaded(number[0, -1], 2, -0.25),)))
-    assert -moved(solver, number[0, -1], 2) / 1.8248e-5 == pytest.approx(share, abs=0.003)
+    assert cases.cylinder(16, modes)[0] / 1.8248e-5 == pytest.approx(share, abs=0.003)
 
 
 @pytest.mark.parametrize(("modes", "share"), [(0, 0.9900), (4, 0.9925)])
 def test_pinched_hemisphere(modes: int, share: float) -> None:
-    top = 0.5 * np.pi - math.radians(18)
-    x, nodes, number = quads(16, 16, lambda r, s: _sphere(0.5 * np.pi * r, top * s))
-    fixed = held(len(x), (number[0], "yac"), (number[-1], "xbc"), (number[0, 0], "z"))
-    elements = shell(nodes, 0.04, Elastic.from_engineering(6.825e7, 0.3), modes=modes)
-    loads = (loaded(number[0, 0], 0, 1.0), loaded(number[-1, 0], 1, -1.0))
-    solver, _ = solve(problem(x, elements, fixed, nodal_loads=loads))
-    assert moved(solver, number[0, 0], 0) / 0.0940 == pytest.approx(share, abs=0.003)
-
-
-def _sphere(round: np.ndarray, up: np.ndarray) -> np.ndarray:
-    return 10 * np.stack([np.cos(up) * np.cos(round), np.cos(up) * np.sin(round), np.sin(up)], -1)
+    assert cases.hemisphere(16, modes)[0] / 0.0940 == pytest.approx(share, abs=0.003)
 
 
 @pytest.mark.parametrize(
@@ -183,21 +162,8 @@ def _sphere(round: np.ndarray, up: np.ndarray) -> np.ndarray:
 )  # fmt: skip
 def test_twisted_beam(thickness: float, dof: int, reference: float, shares: tuple[float, float]) -> None:
     """Warped elements: the membrane field is for them. In the plane of the tip's width, and across."""
-
-    def place(r: np.ndarray, s: np.ndarray) -> np.ndarray:
-        turn, across = 0.5 * np.pi * r, 1.1 * (s - 0.5)
-        return np.stack([12 * r, across * np.sin(turn), across * np.cos(turn)], -1)
-
-    x, nodes, number = quads(24, 4, place)
-    load = 1.0 if thickness > 0.1 else 1e-6
     for modes, share in zip((0, 4), shares, strict=True):
-        elements = shell(nodes, thickness, Elastic.from_engineering(29e6, 0.22), modes=modes)
-        tip = np.full(5, load / 4)
-        tip[[0, -1]] /= 2
-        pull = fem.NodalLoad(number[-1], np.full(5, dof), tip)
-        solver, _ = solve(problem(x, elements, held(len(x), (number[0], "xyzabc")), nodal_loads=(pull,)))
-        scale = load if thickness > 0.1 else 1e-6
-        assert moved(solver, number[-1, 2], dof) / reference * (1.0 / scale) * load == pytest.approx(share, abs=0.003)
+        assert cases.twisted(24, thickness, dof, modes)[0] / reference == pytest.approx(share, abs=0.003)
 
 
 def test_a_thin_plate_does_not_lock() -> None:
@@ -250,10 +216,7 @@ def test_triangles_converge_on_the_pinched_cylinder_and_do_not_lock() -> None:
     """Constant membrane strains converge slower than the quadrilateral's; bending at thickness 1e-3 is as good."""
     shares = []
     for n in (8, 16):
-        x, nodes, number = quads(
-            n, n, lambda r, s: np.stack([300 * np.sin(0.5 * np.pi * r), 300 * s, 300 * np.cos(0.5 * np.pi * r)], -1)
-        )
-        fixed = held(len(x), (number[:, 0], "xz"), (number[:, -1], "yac"), (number[0], "xbc"), (number[-1], "zab"))
+        x, nodes, number, fixed = cases.cylinder_mesh(n)
         elements = _triangle_shell(_triangles(nodes), 3.0, Elastic.from_engineering(3e6, 0.3))
         solver, _ = solve(problem(x, elements, fixed, nodal_loads=(loaded(number[0, -1], 2, -0.25),)))
         shares.append(-moved(solver, number[0, -1], 2) / 1.8248e-5)
