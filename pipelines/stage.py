@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -100,6 +101,7 @@ class Stage:
         self._spheres.SetMapper(self._mapper)
         self._spheres.prop.ambient, self._spheres.prop.diffuse = self._light
         self._surface: Any = None
+        self._overlay: tuple[tuple[NDArray[np.intp], ...], NDArray[np.uint8]] | None = None  # what all pictures have
         right, bottom = (_MARGIN, _BAR_BELOW) if self._wide else (_BAR_RIGHT, _MARGIN)
         free = (_MARGIN, bottom + _MARGIN, 1 - right - _MARGIN, 1 - _HEAD - _MARGIN)
         aim(self._plotter.camera, axes, box, size, free)
@@ -119,7 +121,9 @@ class Stage:
         k = self._finer
         if k > 1:
             width, height = self._size
-            image = image.reshape(height, k, width, k, 3).mean(axis=(1, 3)).round().astype(np.uint8)
+            parts = image.reshape(height, k, width, k, 3)
+            total = sum(parts[:, i, :, j].astype(np.uint16) for i in range(k) for j in range(k))
+            image = ((total + k * k // 2) // (k * k)).astype(np.uint8)
         return self._annotated(image, caption)
 
     def _show_cloud(self, cloud: Cloud) -> None:
@@ -154,6 +158,7 @@ class Stage:
             interpolate_before_map=True,
             render_lines_as_tubes=False,
             reset_camera=False,
+            render=False,
             copy_mesh=False,
         )
 
@@ -163,20 +168,43 @@ class Stage:
 
     def _annotated(self, image: NDArray[np.uint8], caption: str) -> NDArray[np.uint8]:
         """The image with title, time and colour bar."""
+        if self._overlay is None:
+            self._overlay = _inked(self._figure(self._lettered))
+        out = image.copy()
+        for where, ink in (self._overlay, _inked(self._figure(lambda figure: self._timed(figure, caption)))):
+            share = ink[:, 3:].astype(np.uint16)
+            out[where] = (out[where] * (255 - share) + ink[:, :3] * share + 127) // 255
+        return out
+
+    def _figure(self, draw: Callable[[Any], None]) -> Any:
+        """A canvas of the picture's size with something drawn on it."""
         from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.cm import ScalarMappable
-        from matplotlib.colors import Normalize
         from matplotlib.figure import Figure
 
         dpi = 100.0
         width, height = self._size
-        figure = Figure(figsize=(width / dpi, height / dpi), dpi=dpi, facecolor="white")
-        canvas: Any = FigureCanvasAgg(figure)
-        figure.figimage(image, origin="upper", zorder=-1)
-        letter = 0.72 * max(11.0, min(height / 34, width / 52))  # points of 1/72 inch at 100 dots an inch
-        line = 1 - _HEAD / 2
-        figure.text(0.025, line, self._title, fontsize=1.15 * letter, color=_INK, va="center")
-        figure.text(0.975, line, caption, fontsize=1.15 * letter, color=_INK, va="center", ha="right")
+        figure = Figure(figsize=(width / dpi, height / dpi), dpi=dpi, facecolor="none")
+        canvas = FigureCanvasAgg(figure)
+        draw(figure)
+        canvas.draw()
+        return canvas
+
+    @property
+    def _letter(self) -> float:
+        """Size of letters, in points of 1/72 inch at 100 dots an inch."""
+        width, height = self._size
+        return 0.72 * max(11.0, min(height / 34, width / 52))
+
+    def _timed(self, figure: Any, caption: str) -> None:
+        figure.text(0.975, 1 - _HEAD / 2, caption, fontsize=1.15 * self._letter, color=_INK, va="center", ha="right")
+
+    def _lettered(self, figure: Any) -> None:
+        """What all pictures have: title and colour bar."""
+        from matplotlib.cm import ScalarMappable
+        from matplotlib.colors import Normalize
+
+        letter = self._letter
+        figure.text(0.025, 1 - _HEAD / 2, self._title, fontsize=1.15 * letter, color=_INK, va="center")
         mappable = ScalarMappable(Normalize(*self._scale.limits), self._scale.cmap)
         place = (0.25, 0.115, 0.5, 0.028) if self._wide else (1 - _BAR_RIGHT + 0.03, 0.14, 0.018, 0.64)
         orientation = "horizontal" if self._wide else "vertical"
@@ -188,5 +216,10 @@ class Stage:
             bar.set_label(self._scale.label, fontsize=letter, color=_INK)
         else:
             figure.text(0.975, 0.86, self._scale.label, fontsize=letter, color=_INK, ha="right", va="center")
-        canvas.draw()
-        return np.asarray(canvas.buffer_rgba())[..., :3].copy()
+
+
+def _inked(canvas: Any) -> tuple[tuple[NDArray[np.intp], ...], NDArray[np.uint8]]:
+    """The pixels of a canvas that are not clear: where they are, and their colours and opacity (n, 4)."""
+    drawn = np.asarray(canvas.buffer_rgba())
+    where = np.nonzero(drawn[..., 3])
+    return where, drawn[where]
