@@ -24,6 +24,7 @@ from ..frame import Cells, Frame
 
 Floats = NDArray[np.float64]
 log = logging.getLogger("zrno")
+NOTED = 10  # periods between looks at the energies
 SLICE = 1_000_000  # particle steps at a time: all that a period takes
 SMALL = 1e-3  # of the largest force so far: changes of less are not iterated on
 LEAST_RELAXATION, FIRST_RELAXATION = 0.05, 0.5
@@ -80,7 +81,7 @@ class Coupled:
         self._told = False
         self._moved = np.zeros((m, 3))  # of the nodes in the last period
         self.seconds = {"structure": 0.0, "particles": 0.0}
-        self._start_energy = self.energies()
+        self._ledger = sph.Ledger(self.energies())
 
     @property
     def time(self) -> float:
@@ -116,7 +117,14 @@ class Coupled:
             return
         if self.exchange.original:
             self._as_original()
-            return
+        else:
+            self._period()
+        if self.step % NOTED == 0:
+            self._ledger.note(self.energies())
+
+    def _period(self) -> None:
+        """One of the structure's steps, and the particles after it."""
+        s = self.structure
         period, carried = s.period, self.pending
         if s.guided:  # it goes its way whatever pushes it: the force is that of the period itself
             _, impulse = self._exchange(self.force)
@@ -265,7 +273,7 @@ class Coupled:
 
     def energy_report(self) -> dict[str, float]:
         """Energies at the start and now; balance_error has in it what the interface made."""
-        return sph.measures.report(self._start_energy, self.energies())
+        return self._ledger.report(self.energies())
 
     # to be continued
 
@@ -273,11 +281,10 @@ class Coupled:
         """Everything that another process needs to go on."""
         data: dict[str, Any] = {f"structure_{k}": v for k, v in self.structure.checkpoint().items()}
         data |= {f"particles_{k}": v for k, v in self.particles.checkpoint().items()}
-        start = self._start_energy
-        return data | {
+        return data | self._ledger.kept() | {
             "force": self.force.copy(), "pending": self.pending.copy(), "work": self.work,
             "iterations": self.iterations, "largest": self._largest, "relaxation": self._relaxation,
-            "start_energy": np.array([start[name] for name in sorted(start)]), "time": self.time, "step": self.step,
+            "time": self.time, "step": self.step,
         }  # fmt: skip
 
     def restore(self, data: dict[str, Any]) -> None:
@@ -290,5 +297,4 @@ class Coupled:
         self.force, self.pending = np.array(data["force"]), np.array(data["pending"])
         self.work, self.iterations = float(data["work"]), int(data["iterations"])
         self._largest, self._relaxation = float(data["largest"]), float(data["relaxation"])
-        names = sorted(self._start_energy)
-        self._start_energy = dict(zip(names, np.asarray(data["start_energy"]).tolist(), strict=True))
+        self._ledger.restore(data)
