@@ -42,7 +42,9 @@ def coupled_problem(
 
     Raises InputError for what the decks ask and is not done, ValueError for what does not go together.
     """
-    structure = structure_problem(steel, paths[1], of_structure, original=original)
+    structure = structure_problem(steel, paths[1], of_structure)
+    if original and structure.dynamics is not None:
+        structure = dataclasses.replace(structure, dynamics=None)  # its coupled shells have none: solvers/coupling
     if how.rigid or _all_given(structure):
         structure = dataclasses.replace(structure, rigid=True)
     surface = wetted(steel, _parts(steel, how, paths[1]))

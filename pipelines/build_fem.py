@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from typing import Any
 
 import numpy as np
@@ -20,10 +19,8 @@ _MODES = {"hex8": 12, "quad4": 4}  # enhanced strains where a deck asks for inco
 _FACES = {3: "tri3", 4: "quad4", 6: "tri6", 8: "quad8", 9: "quad9"}
 
 
-def structure_problem(model: Model, path: str, method: Fem | None = None, *, original: bool = False) -> fem.Problem:
+def structure_problem(model: Model, path: str, method: Fem | None = None) -> fem.Problem:
     """The problem that a finite element deck poses. path: of the deck; method: what the scene says beyond it.
-
-    original: four-node shells without incompatible modes lock, as the original program's do.
 
     Raises InputError for what the deck asks and this solver does not do.
     """
@@ -44,7 +41,7 @@ def structure_problem(model: Model, path: str, method: Fem | None = None, *, ori
     if not heated(model) and (cold := sum(len(a.nodes) for a in model.nodal_loads if a.kind == "temperature")):
         warning = f"{path}: {cold} temperatures do nothing: no material expands by them (model 3)"
         model.warnings += [warning] if warning not in model.warnings else []
-    elements = tuple(_as_original(e) if original else e for e in _elements(model, method))
+    elements = tuple(_elements(model, method))
     plain = all(e.geometry == fem.SMALL for e in elements)
     return fem.Problem(
         title=model.title,
@@ -101,12 +98,6 @@ def _elements(model: Model, method: Fem) -> list[fem.Elements]:
             if block.kind in TABLE and model.parts[part].section is not None:
                 found += [_group(model, block, rows, part, method) for rows in _lives(block, block.part == part)]
     return found
-
-
-def _as_original(elements: fem.Elements) -> fem.Elements:
-    """Four-node shells by their displacements alone, where there are no incompatible modes either."""
-    locks = elements.family == "shell" and elements.kind == "quad4" and not elements.modes
-    return dataclasses.replace(elements, untied=locks)
 
 
 def _lives(block: ElementBlock, rows: Any) -> list[Any]:

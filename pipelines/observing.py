@@ -30,4 +30,4 @@ class Solver(Protocol):
         """All that a resumed run needs: arrays, numbers, strings by name."""
 
     def energy_report(self) -> Mapping[str, float]:
-        """Energies, and `balance_error`: what was made or lost since the start, relative to the largest of them."""
+        """Energies, and `balance_error`: what was made or lost since the start, relative to the largest so far."""

@@ -136,7 +136,7 @@ def _solver(
     if model.fem_control is not None:
         from zrno.pipelines.build_fem import structure_problem
 
-        return _structure(structure_problem(model, str(deck), of_structure, original=original), model, deck, threads)
+        return _structure(structure_problem(model, str(deck), of_structure), model, deck, threads)
     from zrno.pipelines.build import particle_problem
     from zrno.solvers import sph
 

@@ -24,6 +24,7 @@ from ..frame import Cells, Frame
 
 Floats = NDArray[np.float64]
 log = logging.getLogger("zrno")
+NOTED = 10  # periods between looks at the energies
 SLICE = 1_000_000  # particle steps at a time: all that a period takes
 SMALL = 1e-3  # of the largest force so far: changes of less are not iterated on
 LEAST_RELAXATION, FIRST_RELAXATION = 0.05, 0.5
@@ -36,9 +37,9 @@ class Exchange:
     nodes: (m,) indices of the wetted nodes, in the order of the driven particles; tolerance: of the force in a period,
     relative, where it is iterated (strong coupling), 0 for once (weak); most: iterations; relaxation: share of what is
     received that the next period gets, the rest comes later (weak coupling with a structure without inertia, which
-    otherwise jumps from under the grain); original: hand back what the
-    original programs do, accelerations at the end of the period, none with kernel contact. offset: added to the
-    numbers of the structure's materials, which follow the particles'. area: (m,) of each node, for frames.
+    otherwise jumps from under the grain); original: hand back what the original programs do, accelerations at the end
+    of the period, to other nodes, none with kernel contact. offset: added to the numbers of the structure's materials,
+    which follow the particles'. area: (m,) of each node, for frames.
     """
 
     nodes: NDArray[np.int64]
@@ -79,8 +80,9 @@ class Coupled:
         self._relaxation = FIRST_RELAXATION
         self._told = False
         self._moved = np.zeros((m, 3))  # of the nodes in the last period
+        self._behind = 0.0  # time by which the particles are late, as the original's are
         self.seconds = {"structure": 0.0, "particles": 0.0}
-        self._start_energy = self.energies()
+        self._ledger = sph.Ledger(self.energies())
 
     @property
     def time(self) -> float:
@@ -101,7 +103,9 @@ class Coupled:
         """What a run is built of, for the log."""
         e = self.exchange
         how = f"iterated to {e.tolerance:g}" if e.tolerance else "once a period"
-        how = "as the original programs" if e.original else how
+        if e.original:
+            handed = f"{self._shift} nodes further on" if self.particles.problem.apart else "as zero: of kernel contact"
+            how = f"as the original programs ({handed}), a step of particles lost in each period"
         return (
             f"structure: {self.structure.kernels()}; particles: {self.particles.kernels()}; "
             f"{len(e.nodes)} wetted nodes, forces handed over {how}"
@@ -116,7 +120,14 @@ class Coupled:
             return
         if self.exchange.original:
             self._as_original()
-            return
+        else:
+            self._period()
+        if self.step % NOTED == 0:
+            self._ledger.note(self.energies())
+
+    def _period(self) -> None:
+        """One of the structure's steps, and the particles after it."""
+        s = self.structure
         period, carried = s.period, self.pending
         if s.guided:  # it goes its way whatever pushes it: the force is that of the period itself
             _, impulse = self._exchange(self.force)
@@ -173,12 +184,12 @@ class Coupled:
         """One structural step under these forces (m, 3), the particles after it; the work done and their impulse."""
         s, nodes = self.structure, self.exchange.nodes
         u = s.shape.u[nodes, :3]
-        start, before = s.time, np.zeros_like(force) if s.loads.contact is None else s.loads.contact[nodes, :3]
+        before = np.zeros_like(force) if s.loads.contact is None else s.loads.contact[nodes, :3]
         self._press(force)
         self._lead()
         self._moved = moved = s.shape.u[nodes, :3] - u
         mean = force if s.moving else 0.5 * (force + before)
-        self._follow(s.time - start)
+        self._follow()
         return float(np.sum(mean * moved)), self._driven.take_impulse()
 
     def _press(self, force: Floats, *, at_once: bool = True) -> None:
@@ -192,25 +203,46 @@ class Coupled:
         self.structure.advance(math.inf, 1)
         self.seconds["structure"] += time.perf_counter() - began
 
-    def _follow(self, period: float) -> None:
+    def _follow(self) -> None:
         """The particles go where the structure has gone, and to its time."""
-        s, p = self.structure, self.particles
-        now = s.problem.x[self.exchange.nodes] + s.shape.u[self.exchange.nodes, :3]
-        left = s.time - p.time
+        self._go(self.structure.time - self.particles.time)
+        self._run(self.structure.time)
+
+    def _go(self, period: float) -> None:
+        """The driven nodes set out for where the structure is."""
+        s, nodes = self.structure, self.exchange.nodes
+        self._driven.go((s.problem.x[nodes] + s.shape.u[nodes, :3] - self._driven.read("x")) / period)
+
+    def _run(self, until: float) -> None:
+        """The particles' steps."""
         began = time.perf_counter()
-        self._driven.go((now - self._driven.read("x")) / (left if left > 0.0 else period))
-        while p.time < s.time:
-            p.advance(s.time, SLICE)
+        while self.particles.time < until:
+            self.particles.advance(until, SLICE)
         self.seconds["particles"] += time.perf_counter() - began
 
     def _as_original(self) -> None:
+        """A period as the original programs take it: what they lose and misplace is lost and misplaced here too.
+
+        Its particles leave a period when they have passed its end, with the next step counted and not taken: they
+        fall behind by a step a period. (Here `until` is the label of a state, a step ahead of it.)
+        """
         s, p = self.structure, self.particles
-        start = s.time
+        period = s.period
         self._press(self.force, at_once=False)
         self._lead()
-        self._follow(s.time - start)
+        self._go(period)
+        self._run(s.time - self._behind + p.dt)
+        self._behind += p.dt
         self._driven.take_impulse()
-        self.force = self._driven.read("c") if p.problem.apart else np.zeros_like(self.force)
+        self.force = _misplaced(self._driven.read("c"), self._shift) if p.problem.apart else np.zeros_like(self.force)
+
+    @property
+    def _shift(self) -> int:
+        """How many nodes further on the original hands a node's force over.
+
+        It takes the number of nodes off that of the particle, where that of the particles before them was meant.
+        """
+        return self.particles.n - 2 * len(self.exchange.nodes)
 
     # what it shows
 
@@ -265,7 +297,7 @@ class Coupled:
 
     def energy_report(self) -> dict[str, float]:
         """Energies at the start and now; balance_error has in it what the interface made."""
-        return sph.measures.report(self._start_energy, self.energies())
+        return self._ledger.report(self.energies())
 
     # to be continued
 
@@ -273,11 +305,10 @@ class Coupled:
         """Everything that another process needs to go on."""
         data: dict[str, Any] = {f"structure_{k}": v for k, v in self.structure.checkpoint().items()}
         data |= {f"particles_{k}": v for k, v in self.particles.checkpoint().items()}
-        start = self._start_energy
-        return data | {
+        return data | self._ledger.kept() | {
             "force": self.force.copy(), "pending": self.pending.copy(), "work": self.work,
             "iterations": self.iterations, "largest": self._largest, "relaxation": self._relaxation,
-            "start_energy": np.array([start[name] for name in sorted(start)]), "time": self.time, "step": self.step,
+            "behind": self._behind, "time": self.time, "step": self.step,
         }  # fmt: skip
 
     def restore(self, data: dict[str, Any]) -> None:
@@ -290,5 +321,14 @@ class Coupled:
         self.force, self.pending = np.array(data["force"]), np.array(data["pending"])
         self.work, self.iterations = float(data["work"]), int(data["iterations"])
         self._largest, self._relaxation = float(data["largest"]), float(data["relaxation"])
-        names = sorted(self._start_energy)
-        self._start_energy = dict(zip(names, np.asarray(data["start_energy"]).tolist(), strict=True))
+        self._behind = float(data["behind"])
+        self._ledger.restore(data)
+
+
+def _misplaced(force: Floats, shift: int) -> Floats:
+    """Forces (m, 3) that many nodes further on; what passes the last one is lost."""
+    to = np.arange(len(force)) + shift
+    there = (to >= 0) & (to < len(force))
+    out = np.zeros_like(force)
+    out[to[there]] = force[there]
+    return out

@@ -25,8 +25,7 @@ class Elements:
     nodes: (e, n); ids: (e,) of the deck; material: its number in the deck. geometry: SMALL strain, TOTAL or UPDATED
     Lagrangian. gauss: points by direction, 0 the usual; modes: number of enhanced strains; mean: whether dilatation is
     the element's mean; plane: "strain", "stress", "axisymmetric"; thickness: (e,) or (e, n); layers: points through a
-    shell's thickness; untied: of a four-node shell, strains of the displacements alone, which lock;
-    section: a beam's or truss's numbers by name (area, iyy, izz, j, shear_y, shear_z);
+    shell's thickness; section: a beam's or truss's numbers by name (area, iyy, izz, j, shear_y, shear_z);
     orientation: (e, 3) a beam's; value: (e, ...) stiffness of springs, mass of masses; birth, death: (e,) times;
     expansion: strain in all directions by a degree of temperature above `reference`.
     """
@@ -46,7 +45,6 @@ class Elements:
     thickness: Floats | None = None
     layers: int = 2
     shear_factor: float = 5.0 / 6.0
-    untied: bool = False
     section: dict[str, float] = field(default_factory=dict)
     orientation: Floats | None = None
     value: Floats | None = None

@@ -1,9 +1,9 @@
 """Smoothed particle hydrodynamics for solids."""
 
-from . import measures
 from .ghosts import Plane
+from .ledger import Ledger, total
 from .problem import Body, Cures, Problem
 from .setup import refuse
 from .solver import Solver
 
-__all__ = ["Body", "Cures", "Plane", "Problem", "Solver", "measures", "refuse"]
+__all__ = ["Body", "Cures", "Ledger", "Plane", "Problem", "Solver", "refuse", "total"]

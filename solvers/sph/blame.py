@@ -8,18 +8,18 @@ from typing import Any
 import numpy as np
 
 from ..errors import Diverged
-from . import measures
 from .contact import culprit
+from .ledger import Ledger
 from .problem import Problem
 from .state import State
 
 CREATED = 3.0  # so many times the energy put in cannot come out of a stable run
 
 
-def energy_made(s: State, step: int, start: dict[str, float], now: dict[str, float]) -> Diverged | None:
-    """An unstable step makes energy out of nothing, long before a number overflows. start, now: energies."""
-    given = start["kinetic"] + abs(start["internal"]) + abs(now["external_work"])
-    made = measures.total(now) - measures.total(start)
+def energy_made(s: State, step: int, ledger: Ledger, now: dict[str, float]) -> Diverged | None:
+    """An unstable step makes energy out of nothing, long before a number overflows. now: energies."""
+    given = ledger.start["kinetic"] + abs(ledger.start["internal"]) + ledger.work
+    made = ledger.made(now)
     if given == 0.0 or made <= CREATED * given:  # a stress at rest stores what nobody put in
         return None
     kinetic = s.rows("mass")[0, : s.n] * np.sum(s.rows("u")[:, : s.n] ** 2, axis=0)

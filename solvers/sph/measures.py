@@ -9,14 +9,12 @@ from numpy.typing import NDArray
 
 from ..materials import PLASTIC_STRAIN
 from . import across
+from .ledger import total
 from .particle import DRIVEN
 from .problem import Problem
 from .rings import TURN
 from .smoothing import Shape
 from .state import Arrays, Floats, Numbers, State
-
-# what the fixed columns do not have, each a column of its own at the end of the history
-STORED = ("contact_energy", "contact_dissipated", "artificial_energy", "relaxation_dissipated")
 
 
 def particles(p: Problem, s: State, velocity: Floats, live: int) -> dict[str, Floats | NDArray[np.int64]]:
@@ -95,29 +93,6 @@ def _energies(p: Problem, s: State, velocity: Floats, i0: int, i1: int) -> dict[
         "artificial_energy": -sum_of("artificial_work"),
         "contact_dissipated": heat,
         "relaxation_dissipated": sum_of("relaxed"),
-    }
-
-
-def total(energies: dict[str, float]) -> float:
-    """What stays constant."""
-    stored = sum(energies[name] for name in STORED)
-    return energies["kinetic"] + energies["internal"] + stored - energies["external_work"] + energies.get("absent", 0.0)
-
-
-def report(start: dict[str, float], now: dict[str, float]) -> dict[str, float]:
-    """Energies at the start and now.
-
-    balance_error is relative to the largest of kinetic, internal and external work.
-    """
-    scale = max(start["kinetic"], now["kinetic"], abs(now["internal"]), abs(now["external_work"]), 1e-300)
-    return {
-        "initial": start["kinetic"] + start["internal"],
-        "final": total(now) + now["external_work"],
-        "kinetic": now["kinetic"],
-        "internal": now["internal"],
-        "external_work": now["external_work"],
-        "dissipated": now["dissipated"],
-        "balance_error": abs(total(now) - total(start)) / scale,
     }
 
 

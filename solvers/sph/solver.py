@@ -22,13 +22,14 @@ from ..threads import available, run
 from . import across, births, blame, ghosts, local, measures, probes, reference, rest, setup, step
 from .contact import contact_of
 from .driving import Driven
+from .ledger import STORED, Ledger
 from .particle import DRIVEN
 from .problem import Cures, Problem
 from .smoothing import shape_of
 from .state import Arrays, State
 
 SKIN = 0.25  # of the largest h: the list's spare radius
-CHECKED = 50  # steps between looks at the energy balance, which the original's coupling does not keep
+CHECKED = 50  # steps between looks at the energies; the original's coupling does not keep their balance
 SMALL = 2000  # fewer particles run on one thread: a parallel region costs more than it saves
 
 Floats = NDArray[np.float64]
@@ -87,7 +88,7 @@ class Solver:
             raise self._collapsed()
         if problem.original:
             self._start_as_original(first)
-        self._start_energy = self.energies()
+        self._ledger = Ledger(self.energies())
 
     def _start_as_original(self, first: float) -> None:
         """The original program begins with a whole step of strain, at positions half a step before the start."""
@@ -168,9 +169,11 @@ class Solver:
                 raise self._collapsed()
             else:
                 break
-        if self.step // CHECKED > started // CHECKED and not (self.problem.original and self._has.driven):
-            made = blame.energy_made(self._state, self.step, self._start_energy, self.energies())
-            if made is not None:
+        if self.step // CHECKED > started // CHECKED:
+            now = self.energies()
+            self._ledger.note(now)
+            made = blame.energy_made(self._state, self.step, self._ledger, now)
+            if made is not None and not (self.problem.original and self._has.driven):
                 raise made
 
     def _run_kernel(self, until: float, steps: int, pause: float = math.inf) -> int:
@@ -354,7 +357,7 @@ class Solver:
         """
         s, n = self._state, self.live
         energies = self.energies()
-        stored = {name: energies.pop(name) for name in measures.STORED}
+        stored = {name: energies.pop(name) for name in STORED}
         absent = energies.pop("absent")
         momentum = np.zeros(3)
         moving = s.fixed[:n] & DRIVEN == 0
@@ -379,8 +382,8 @@ class Solver:
         }
 
     def energy_report(self) -> dict[str, float]:
-        """Energies at the start and now, and how far their balance is out, see `measures.report`."""
-        return measures.report(self._start_energy, self.energies())
+        """Energies at the start and now, and how far their balance is out, see `Ledger.report`."""
+        return self._ledger.report(self.energies())
 
     # to be continued
 
@@ -391,7 +394,7 @@ class Solver:
             "progress": self._progress.copy(),
             "inner": self._inner.copy(),
             **({} if self.driven is None else self.driven.kept()),
-            "start_energy": np.array(list(self._start_energy.values())),
+            **self._ledger.kept(),
             "time": self.time,
             "step": self.step,
         }
@@ -405,7 +408,7 @@ class Solver:
         self._inner[:] = data["inner"]
         if self.problem.body_curve is not None:
             step.body_force_at(self._progress[step.TIME], self._numbers)
-        self._start_energy = dict(zip(self._start_energy, np.asarray(data["start_energy"]).tolist(), strict=True))
+        self._ledger.restore(data)
         self._rebuild(sort=False)
         if self.driven is not None:
             self.driven.restore(data)

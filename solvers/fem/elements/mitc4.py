@@ -62,13 +62,12 @@ def cross_into(a, b, scale, out):
 
 
 @kernel
-def tied_strains(y, d, metric, rows, work, at_r, at_s):
-    """Half-metrics (9,) and their rows (9, 6, 4) at the tying points at_r, at_s (9,), t = 0. work: (5, 3), (3, 4), (3,)
-    scratch."""
+def tied_strains(y, d, metric, rows, work):
+    """Half-metrics (9,) and their rows (9, 6, 4) at the tying points, t = 0. work: (5, 3), (3, 4), (3,) scratch."""
     base, functions, cross = work
     values, by_r, by_s = functions[0], functions[1], functions[2]
     for p in range(9):
-        shape_at(at_r[p], at_s[p], values, by_r, by_s)
+        shape_at(TIED_R[p], TIED_S[p], values, by_r, by_s)
         base_at(values, by_r, by_s, y, d, base)
         for c in range(6):
             for i in range(4):
@@ -136,17 +135,6 @@ def tied_weights(x, r, s, weights):
     weights[2, 3] -= 0.25 * s
     weights[2, 4] += 1.0
     return 1
-
-
-@kernel
-def untie(r, s, at_r, at_s, weights):
-    """Tying points and weights with which strains are those of the displacements at (r, s)."""
-    at_r[:] = r
-    at_s[:] = s
-    weights[:] = 0.0
-    weights[0, 0] = 1.0
-    weights[1, 2] = 1.0
-    weights[2, 4] = 1.0
 
 
 @kernel

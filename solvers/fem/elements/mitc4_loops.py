@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 from ...jit import kernel
 from .condense import condense
 from .mitc4 import (
-    TIED_R,
-    TIED_S,
     base_at,
     covariant_rows,
     cross_into,
@@ -22,7 +20,6 @@ from .mitc4 import (
     tied_strains,
     tied_weights,
     to_local,
-    untie,
 )
 from .shapes import functions, surface_products
 from .shell_gather import gather, gather_reference
@@ -32,14 +29,13 @@ from .shell_geometry import bending_geometry, tied_geometry
 @kernel
 def strains(
     nodes, x, u, before, turn, directors, half, points, layers, root, finite, modes, alpha, alpha_before, committed,
-    strain, convex, untied,
+    strain, convex,
 ):  # fmt: skip
     """Strain increments (e 4 l, 6) 11 22 33 12 23 31, tensor components of the local frames, since the last state.
 
     x: (N, 3); u, before: (N, 6); turn: (N, 3, 3); directors: (e, 4, 3); half: (e, 4) half thickness; points: (4, 2) in
     the plane; layers: (l,) along t; root: of the shear factor; finite: True with finite rotation, None; committed: (e 4
-    l, 6) strain so far; convex: (e,) set False for an element that is not; untied: True for strains of the
-    displacements alone, None for those of MITC4+.
+    l, 6) strain so far; convex: (e,) set False for an element that is not.
     """
     reference, thick, now, corner = np.empty((4, 3)), np.empty((4, 3)), np.empty((4, 3)), np.empty((4, 3))
     moved, turns, step = np.empty((4, 6)), np.empty((4, 3, 3)), np.empty((4, 6))
@@ -52,28 +48,21 @@ def strains(
     weights, rows, cov, first = np.empty((3, 5)), np.empty((5, 6, 4)), np.empty(5), np.empty(5)
     frame, dual, local, change = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)), np.empty((5, 5))
     extra, vectors = np.empty((5, 4)), np.empty((3, 3))
-    at_r, at_s = TIED_R.copy(), TIED_S.copy()
     many = len(points) * len(layers)
     for q in range(nodes.shape[0]):
         gather(nodes, q, x, u, corner, directors, half, turn, reference, thick, now, moved, turns, finite)
         for i in range(4):
             for c in range(6):
                 step[i, c] = u[nodes[q, i], c] - before[nodes[q, i], c]
-        if untied is None:
-            tied_strains(reference, thick, metric, tied, work, at_r, at_s)
-            if finite is not None:
-                tied_strains(now, corner, metric_now, tied, work, at_r, at_s)
+        tied_strains(reference, thick, metric, tied, work)
+        if finite is not None:
+            tied_strains(now, corner, metric_now, tied, work)
         convex[q] = True
         for g in range(len(points)):
             r, s = points[g, 0], points[g, 1]
             if not tied_weights(reference, r, s, weights):
                 convex[q] = False
                 break
-            if untied is not None:
-                untie(r, s, at_r, at_s, weights)
-                tied_strains(reference, thick, metric, tied, work, at_r, at_s)
-                if finite is not None:
-                    tied_strains(now, corner, metric_now, tied, work, at_r, at_s)
             shape_at(r, s, values, by_r, by_s)
             base_at(values, by_r, by_s, reference, thick, base)
             if finite is not None:
@@ -114,7 +103,7 @@ def strains(
 @kernel
 def integrate(
     nodes, x, u, turn, directors, half, points, point_weights, layers, layer_weights, root, drill, finite, modes,
-    stress, modulus, matrix, forces, answer, rest, drilled, untied,
+    stress, modulus, matrix, forces, answer, rest, drilled,
 ):  # fmt: skip
     """Forces (e, 6, 4) of the stresses, and the stiffness (e, 6, 6, 4, 4) or None; see `strains`.
 
@@ -136,13 +125,11 @@ def integrate(
     inner, residual = np.empty((4, 4)), np.empty(4)
     mixed, back = np.empty((4, 6, 4)), np.empty((4, 6, 4))
     pulled, tension = np.empty(9), np.empty(5)
-    at_r, at_s = TIED_R.copy(), TIED_S.copy()
     many = len(points) * len(layers)
     place = (0, 1, 3, 4, 5)
     for q in range(nodes.shape[0]):
         gather(nodes, q, x, u, corner, directors, half, turn, reference, thick, now, moved, turns, finite)
-        if untied is None:
-            tied_strains(now, corner, metric, tied, work, at_r, at_s)
+        tied_strains(now, corner, metric, tied, work)
         forces[q] = 0.0
         drilled[q] = 0.0
         pulled[:] = 0.0
@@ -155,12 +142,7 @@ def integrate(
             back[:] = 0.0
         for g in range(len(points)):
             r, s = points[g, 0], points[g, 1]
-            if untied is None:
-                tied_weights(reference, r, s, weights)
-            else:
-                untie(r, s, at_r, at_s, weights)
-                tied_strains(now, corner, metric, tied, work, at_r, at_s)
-                pulled[:] = 0.0
+            tied_weights(reference, r, s, weights)
             shape_at(r, s, values, by_r, by_s)
             base_at(values, by_r, by_s, reference, thick, base)
             base_at(values, by_r, by_s, now, corner, base_now)
@@ -237,9 +219,6 @@ def integrate(
                     pulled[7] += 0.5 * (1.0 + r) * tension[4]
                     pulled[8] += 0.5 * (1.0 - r) * tension[4]
                     bending_geometry(t, tension, base_now, by_r, by_s, corner, matrix, q)
-            if untied is not None and finite is not None and matrix is not None:
-                tied_geometry(pulled, now, corner, values, by_r, by_s, base_now, matrix, q, at_r, at_s)
-                base_at(values, by_r, by_s, now, corner, base_now)
             frame_at(base, 0.0, frame, dual, local)
             value = drilling(values, by_r, by_s, base_now, corner, frame, turns, local, drill_rows)
             if finite is None:
@@ -256,8 +235,8 @@ def integrate(
                         for e in range(6):
                             for j in range(4):
                                 matrix[q, c, e, i, j] += area * drill_rows[c, i] * drill_rows[e, j]
-        if untied is None and finite is not None and matrix is not None:
-            tied_geometry(pulled, now, corner, values, by_r, by_s, base, matrix, q, at_r, at_s)
+        if finite is not None and matrix is not None:
+            tied_geometry(pulled, now, corner, values, by_r, by_s, base, matrix, q)
         if modes is not None and matrix is not None:
             condense(inner, residual, mixed, back, 4, 6, 4, q, matrix, forces, answer, rest)
         elif modes is not None:

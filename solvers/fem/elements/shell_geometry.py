@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...jit import kernel
-from .mitc4 import base_at, dot, shape_at
+from .mitc4 import TIED_R, TIED_S, base_at, dot, shape_at
 
 
 @kernel
@@ -36,12 +36,12 @@ def of_shift_and_turn(d, scale, i, j, matrix, q):
 
 
 @kernel
-def tied_geometry(pulled, y, d, values, by_r, by_s, base, matrix, q, at_r, at_s):
-    """Stiffness of the stresses through the strains at the tying points at_r, at_s."""
+def tied_geometry(pulled, y, d, values, by_r, by_s, base, matrix, q):
+    """Stiffness of the stresses through the strains at the tying points."""
     for p in range(9):
         if pulled[p] == 0.0:
             continue
-        shape_at(at_r[p], at_s[p], values, by_r, by_s)
+        shape_at(TIED_R[p], TIED_S[p], values, by_r, by_s)
         base_at(values, by_r, by_s, y, d, base)
         if p < 5:
             for i in range(4):

@@ -45,7 +45,6 @@ class ShellGroup:
         self._layers, self._layer_weights = np.ascontiguousarray(layers.points[:, 0]), layers.weights
         self._root = float(np.sqrt(elements.shear_factor))
         self._finite = None if elements.geometry == SMALL else True
-        self._untied = () if k != 4 else (True,) if elements.untied else (None,)
         modes = elements.modes if k == 4 else MODES if k == 3 else 0  # a triangle's are its bubble
         self.modes: int | None = modes or None
         m = e * len(self._weights) * len(self._layers)
@@ -110,7 +109,6 @@ class ShellGroup:
         self._loops.strains(
             *shell, before, turn, self.directors[lo:hi], self._half[lo:hi], self._points, self._layers, self._root,
             self._finite, self.modes, *alpha, self.strain[rows], strain, convex,
-            *self._untied,
         )  # fmt: skip
         if not convex.all():
             raise Bad(int(el.ids[lo + int(np.argmin(convex))]), "its four corners are not convex")
@@ -122,7 +120,7 @@ class ShellGroup:
         self._loops.integrate(
             *shell, turn, self.directors[lo:hi], self._half[lo:hi], self._points, self._weights, self._layers,
             self._layer_weights, self._root, self._drill[lo:hi], self._finite, self.modes, self.trial[rows], modulus,
-            matrix, forces, answer, rest, self._drilled[lo:hi], *self._untied,
+            matrix, forces, answer, rest, self._drilled[lo:hi],
         )  # fmt: skip
         sink.add(nodes, self.dofs, self._offsets[lo:hi], forces, matrix)
 

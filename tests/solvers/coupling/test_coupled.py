@@ -86,6 +86,7 @@ def test_a_checkpoint_changes_nothing(inertia):
         assert np.array_equal(values, two.particles[name]), name
     assert np.array_equal(one.nodes["displacement"], two.nodes["displacement"])
     assert other.history() == again.history()
+    assert other.energy_report() == again.energy_report()
 
 
 def test_threads_change_nothing():

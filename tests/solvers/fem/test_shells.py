@@ -83,7 +83,7 @@ def test_assumed_membrane_strains_of_a_flat_element_are_the_displacements() -> N
     u[:, 2] = 0.0
     metric, rows = np.empty(9), np.empty((9, 6, 4))
     work = (np.empty((5, 3)), np.empty((3, 4)), np.empty(3))
-    mitc4.tied_strains(x, np.tile([0.0, 0.0, 0.05], (4, 1)), metric, rows, work, mitc4.TIED_R, mitc4.TIED_S)
+    mitc4.tied_strains(x, np.tile([0.0, 0.0, 0.05], (4, 1)), metric, rows, work)
     tied = np.einsum("pci,ic->p", rows[:5, :3], u)
     weights = np.empty((3, 5))
     for r, s in rng.uniform(-1, 1, (5, 2)):
@@ -95,14 +95,14 @@ def test_assumed_membrane_strains_of_a_flat_element_are_the_displacements() -> N
         np.testing.assert_allclose(weights @ tied, exact, atol=1e-13)
 
 
-@pytest.mark.parametrize(("modes", "untied"), [(0, False), (4, False), (0, True), ("triangle", False)])
-def test_the_matrix_is_the_derivative_of_the_forces(modes: int | str, *, untied: bool) -> None:
+@pytest.mark.parametrize("modes", [0, 4, "triangle"])
+def test_the_matrix_is_the_derivative_of_the_forces(modes: int | str) -> None:
     """Finite rotations: but for half the moments' skew part, which vanishes where nodes are in balance."""
     rng = np.random.default_rng(1)
     soft = Elastic.from_engineering(1e3, 0.3)
     n = 4 if isinstance(modes, int) else 3
     elements = (
-        shell(NODES, 0.3, soft, geometry="total", modes=modes, untied=untied)
+        shell(NODES, 0.3, soft, geometry="total", modes=modes)
         if isinstance(modes, int)
         else _triangle_shell(np.arange(3)[None], 0.3, soft, geometry="total")
     )
@@ -175,20 +175,6 @@ def test_a_thin_plate_does_not_lock() -> None:
     solver, _ = solve(problem(x, shell(nodes, 1e-4, STEEL), fixed, face_loads=(faces,)))
     stiffness = 2.1e5 * 1e-12 / (12 * (1 - 0.09))
     assert -moved(solver, number[0, 0], 2) * stiffness / 0.00126532 == pytest.approx(1.0, abs=0.002)
-
-
-@pytest.mark.parametrize("geometry", ["small", "total"])
-def test_untied_shells_lock_as_full_integration_does(geometry: str) -> None:
-    """Strip under end moments: an element of length l by full integration is 1 + k G A l^2/(12 E I) too stiff."""
-    length, thickness, n = 2.0, 1.0, 10
-    x, nodes, number = quads(n, 1, lambda r, s: np.stack([length * n * r, 3 * s, 0 * r], -1))
-    law = Elastic.from_engineering(2.1e5, 0.0)
-    elements = shell(nodes, thickness, law, untied=True, geometry=geometry)
-    moment = loaded(number[-1], 4, -1e-3)
-    solver, _ = solve(problem(x, elements, held(len(x), (number[0], "xyzabc")), nodal_loads=(moment,)))
-    exact = 0.5 * 1e-3 / (2.1e5 * 3 * thickness**3 / 12) * (length * n) ** 2
-    factor = 1.0 + (5 / 6) * 0.5 * (length / thickness) ** 2
-    assert moved(solver, number[-1, 0], 2) / exact * factor == pytest.approx(1.0, rel=1e-7)
 
 
 def test_a_folded_tube_twists_as_bredt_says() -> None:

@@ -11,7 +11,7 @@ import pytest
 
 from tests.support.sph_scenes import lattice
 from zrno.solvers.materials import drucker_prager_soil
-from zrno.solvers.sph import Body, Cures, Problem, Solver, measures, rest
+from zrno.solvers.sph import Body, Cures, Problem, Solver, rest, total
 from zrno.solvers.sph.ghosts import SYMMETRY, Plane
 
 SPACING = 0.01
@@ -104,7 +104,7 @@ def test_motion_that_ends_is_dissipated() -> None:
         after = solver.energies()
         if solver.history()["asleep"] > asleep:
             lost += before["kinetic"] - after["kinetic"]
-            off.append(measures.total(after) - measures.total(before))
+            off.append(total(after) - total(before))
     assert lost > 1e-6
     assert abs(sum(off)) < 1e-3 * lost
 
