@@ -83,8 +83,9 @@ class Assembly:
 
     def _system(self, starts: NDArray[np.int32], columns: NDArray[np.int32]) -> linear.System:
         kind = "definite" if self.structure.symmetric else "general"
+        solid = all(g.elements.family == "solid" for g in self.groups)  # shells are too soft for half the digits
         return linear.System(starts, columns, kind=kind, method=self.problem.solver, threads=self.threads,
-                             near_null=self._rigid_motions)  # fmt: skip
+                             near_null=self._rigid_motions, single=solid)  # fmt: skip
 
     @property
     def equations(self) -> int:
