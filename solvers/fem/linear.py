@@ -15,6 +15,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from ..threads import available
 from .libraries import Cholmod, Factors, Multigrid, Pardiso, Singular, SuperLU
 from .mixed import PATIENCE, Mixed, TooFewDigits
 from .structure import product_of_triangle
@@ -140,6 +141,11 @@ class System:
         return self._factors.solve(right)
 
 
+def threads_for(n: int, asked: int | None) -> int:
+    """As many as asked; else all for a large system of n equations, one for a small one."""
+    return asked or (available() if n >= ALONE else 1)
+
+
 def installed() -> list[str]:
     """Methods that this machine has, best first."""
     found = ["scipy"]
@@ -166,7 +172,7 @@ def chosen(method: str, n: int) -> str:
 
 SMALL = 300  # equations: below, loading a library takes longer than solving
 LARGE = 100_000  # equations of solids: above, half of the factors takes so much less time that answering by them pays
-
+ALONE = 20_000  # equations: below, a second thread saves next to nothing
 
 METHODS: dict[str, Callable[[System], Factors]] = {
     "pardiso": Pardiso,

@@ -9,6 +9,7 @@ import pytest
 import scipy.sparse as sp
 
 from zrno.solvers.fem import linear
+from zrno.solvers.threads import available
 
 pytestmark = pytest.mark.skipif("pardiso" not in linear.installed(), reason="PARDISO is not installed")
 
@@ -88,3 +89,10 @@ def test_a_singular_matrix_is_told() -> None:
     """A cube without feet, pushed."""
     with pytest.raises(linear.Singular):
         _system(_springs(6, support=0.0)).solve(np.ones(216))
+
+
+def test_threads_are_all_of_a_large_system_and_one_of_a_small_one() -> None:
+    """What is asked for is taken."""
+    assert linear.threads_for(5_000, None) == 1
+    assert linear.threads_for(50_000, None) == available()
+    assert linear.threads_for(5_000, 3) == linear.threads_for(50_000, 3) == 3
