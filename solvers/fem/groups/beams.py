@@ -1,4 +1,6 @@
-"""Straight beams of two nodes: axial force, bending with shear (Timoshenko), torsion; elastic, small displacements."""
+"""Straight beams of two nodes: axial force, bending with shear (Timoshenko), torsion; elastic, small displacements.
+
+Of large ones: `turning_beams`."""
 
 from __future__ import annotations
 
@@ -6,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...materials import Elastic
-from ..problem import SMALL, Elements
+from ..problem import Elements
 from ..shape import Shape
 from ..structure import Structure
 from .group import Bad, Sink
@@ -22,8 +24,8 @@ class BeamGroup:
     """
 
     def __init__(self, elements: Elements, x: Floats) -> None:
-        if not isinstance(elements.law, Elastic) or elements.geometry != SMALL:
-            raise ValueError("beams are computed elastic and with small displacements only")
+        if not isinstance(elements.law, Elastic):
+            raise ValueError("beams are computed elastic only")
         self.elements = elements
         self.x = x
         self.nodes = np.ascontiguousarray(elements.nodes, dtype=np.int64)
