@@ -87,10 +87,7 @@ def _of_heat(model: Model, path: str) -> list[Fault]:
         materials = [model.materials.get(model.parts[part].material or -1) for part in np.unique(block.part).tolist()]
         if not any(m is not None and m.parameters.get("expansion") for m in materials):
             continue
-        if block.family not in ("solid", "plane"):
-            message = f"{block.kind} {block.family} elements that expand with temperature are not computed"
-            faults.append(Fault(path, at, 1, message, "", "solids and plane elements"))
-        elif any(np.any(block.data.get(name, 0.0)) for name in ("birth", "death")):
+        if any(np.any(block.data.get(name, 0.0)) for name in ("birth", "death")):
             message = f"{block.kind} elements that expand with temperature and are born or die are not computed"
             faults.append(Fault(path, at, 1, message, "", "elements that are there in all steps"))
     return faults

@@ -213,6 +213,10 @@ def _mohr_coulomb(p: Values, points: Floats | None, eos: laws.Eos | None) -> Law
     return laws.mohr_coulomb(p["E"], p["nu"], p["c"], p["phi"], p["psi"])
 
 
+def _cam_clay(p: Values, points: Floats | None, eos: laws.Eos | None) -> Law:
+    return laws.cam_clay(p["E"], p["nu"], p["M"], p["lambda"], p["kappa"], p["pc"], p["e0"])
+
+
 _BUILDERS: dict[str, Callable[[Values, Floats | None, laws.Eos | None], Law]] = {
     "elastic": _elastic,
     "thermo_elastic": _thermo_elastic,
@@ -224,4 +228,5 @@ _BUILDERS: dict[str, Callable[[Values, Floats | None, laws.Eos | None], Law]] = 
     "drucker_prager": _drucker_prager,
     "drucker_prager_soil": _drucker_prager_soil,
     "mohr_coulomb": _mohr_coulomb,
+    "cam_clay": _cam_clay,
 }

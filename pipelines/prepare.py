@@ -130,7 +130,8 @@ def _solver(
             models[0], models[1], (str(decks[0]), str(decks[1])), how, places=places, original=original,
             of_particles=of_particles, of_structure=of_structure,
         )  # fmt: skip
-        steel = _structure(structure, models[1], decks[1], threads)
+        # One thread unless asked: those of PARDISO keep their processors busy for a while after each answer.
+        steel = _structure(structure, models[1], decks[1], threads or 1)
         return Coupled(steel, sph.Solver(particles, threads=threads), exchange)
     model, deck = models[0], decks[0]
     if model.fem_control is not None:

@@ -35,6 +35,7 @@ _LAWS: dict[str, tuple[str, ...]] = {  # of a .dat deck, with the parameters tha
     "cap": ("K", "G", "alpha", "beta", "gamma", "theta", "R", "D", "W", "X0", "tension_cutoff"),
     "drucker_prager": ("E", "nu", "k", "alpha", "tension_cutoff", "X0", "W", "D", "R"),
     "mohr_coulomb": ("E", "nu", "c", "phi", "psi"),
+    "cam_clay": tuple(LAWS["cam_clay"].parameters),
 }
 
 

@@ -81,6 +81,11 @@ LAWS: dict[str, Law] = {
         "cohesion c, angles phi (friction) and psi (dilation)",
         {**_ISOTROPIC, "c": 0.0, "phi": _NEEDED, "psi": 0.0},
     ),
+    "cam_clay": Law(
+        "modified Cam-clay: q^2/M^2 + p (p - pc) = 0, lambda and kappa slopes of the void ratio over ln p, pc and e0 "
+        "at the start",
+        {**_ISOTROPIC, **dict.fromkeys(("M", "lambda", "kappa", "pc", "e0"), _NEEDED)},
+    ),
 }  # fmt: skip
 
 EQUATIONS_OF_STATE: dict[str, Law] = {

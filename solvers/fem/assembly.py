@@ -48,12 +48,11 @@ def moment_nodes(problem: Problem) -> NDArray[np.int64]:
 class Assembly:
     """Groups, equations and the matrix of a problem."""
 
-    def __init__(self, problem: Problem, *, threads: int = 1) -> None:
+    def __init__(self, problem: Problem, *, threads: int | None = None) -> None:
         self._moments = moment_nodes(problem)
         laws = [e.law for e in problem.elements if e.law is not None]
         symmetric = not len(self._moments) and all(symmetric_tangent(law) for law in laws)
         self.problem = problem
-        self.threads = threads
         self.n = len(problem.x)
         self.groups = make_groups(problem)
         active = np.zeros((self.n, 6), bool)
@@ -74,6 +73,7 @@ class Assembly:
         self.still = np.broadcast_to(np.eye(3), (self.n, 3, 3)).copy() if _turns(problem) else None
         self.where = np.flatnonzero(self.free.ravel())
         self.transform = self._relations() if problem.relations else None
+        self.threads = linear.threads_for(self.equations, threads)
         self._moment_places = self._places_of_moments()
         self.heat = Heat(problem, self.groups) if has_heat(problem) else None
         self._timed = [g for g in self.groups if isinstance(g, TimedGroup)]
@@ -83,8 +83,9 @@ class Assembly:
 
     def _system(self, starts: NDArray[np.int32], columns: NDArray[np.int32]) -> linear.System:
         kind = "definite" if self.structure.symmetric else "general"
+        solid = all(g.elements.family == "solid" for g in self.groups)  # shells are too soft for half the digits
         return linear.System(starts, columns, kind=kind, method=self.problem.solver, threads=self.threads,
-                             near_null=self._rigid_motions)  # fmt: skip
+                             near_null=self._rigid_motions, single=solid)  # fmt: skip
 
     @property
     def equations(self) -> int:

@@ -80,7 +80,7 @@ def equilibrium(
     moved = target.change if guess is None and target.change.any() else None
     stale = not keep if guess is None else turns or not assembly.system.factored  # the factors are to be made anew
     loads = target.external(shape)
-    stiff = stale or moved is not None  # the matrix is that of the shape
+    stiff = stale or moved is not None or (keep and assembly.heat is not None)  # enhanced strains grow through it
     internal, of_motion = _evaluate(assembly, shape, start, dt, stiff=stiff, moved=moved)
     residual = _residual(assembly, target, shape, loads, internal, of_motion)
     largest = max(scale.force, _size(loads), _size(of_motion), _size(internal), _size(residual))  # inertia too

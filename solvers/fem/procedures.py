@@ -214,8 +214,10 @@ class Increments(Still):
             reach = now + mover.theta * dt
             target = mover.target(solver.shape, change * mover.theta, lambda s: solver.loads.at(reach, s.u),
                                   mover.theta * dt)  # fmt: skip
-        keep = solver.linear and solver.assembly.heat is None and math.isclose(self._kept, dt, rel_tol=1e-9)
-        guess = self._guess(change, dt)
+        keep = solver.linear and self._kept > 0.0
+        if keep and mover is not None:  # inertia is in the factors; enhanced strains need a matrix to grow by warmth
+            keep = solver.assembly.heat is None and math.isclose(self._kept, dt, rel_tol=1e-9)
+        guess = None if keep else self._guess(change, dt)
         how = solver.problem.iteration
         try:
             shape, internal, trace = equilibrium(

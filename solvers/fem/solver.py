@@ -32,15 +32,15 @@ class Solver:
     """A structure in time. What a step is, the problem says.
 
     given: what it was asked; problem: what is computed, with nodes of its own behind those given where elements need
-    them; shape: the last one accepted; reaction: (n, 6) of supports; internal_forces, external_forces: (n, 6) of
-    stresses and of loads there.
+    them; threads: None for all where the system is large; shape: the last one accepted; reaction: (n, 6) of supports;
+    internal_forces, external_forces: (n, 6) of stresses and of loads there.
     """
 
     def __init__(self, problem: Problem, *, threads: int | None = None) -> None:
         self.given = problem
         self.problem = problem = with_centres(problem)
-        self.threads = threads or 1
-        self.assembly = Assembly(problem, threads=self.threads)
+        self.assembly = Assembly(problem, threads=threads)
+        self.threads = self.assembly.threads
         self.loads = Loads(problem, self.assembly.groups)
         n = len(problem.x)
         self.shape = Shape(np.zeros((n, 6)), self.assembly.still)

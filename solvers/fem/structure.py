@@ -231,3 +231,17 @@ def product_of_elements(matrix, nodes, dofs, u, total):
                     for l in range(corners):
                         part += matrix[e, i, j, k, l] * u[nodes[e, l], dofs[j]]
                     total[nodes[e, k], dofs[i]] += part
+
+
+@kernel
+def product_of_triangle(starts, columns, values, x, out):
+    """A symmetric matrix, of which the upper triangle is stored, times a vector (n,)."""
+    out[:] = 0.0
+    for i in range(len(x)):
+        own, total = x[i], 0.0
+        for m in range(starts[i], starts[i + 1]):
+            j = columns[m]
+            total += values[m] * x[j]
+            if j != i:
+                out[j] += values[m] * own
+        out[i] += total

@@ -93,6 +93,10 @@ CASES: dict[str, tuple[laws.Law, laws.Law]] = {
     "Mohr-Coulomb": (
         built("mohr_coulomb", **MODULI, **SOIL, psi=10.0), laws.mohr_coulomb(210.0, 0.3, 1.0, 30.0, 10.0),
     ),
+    "Cam-clay": (
+        built("cam_clay", **MODULI, **{"M": 1.1, "lambda": 0.15, "kappa": 0.03, "pc": 4.0, "e0": 0.9}),
+        laws.cam_clay(210.0, 0.3, 1.1, 0.15, 0.03, 4.0, 0.9),
+    ),
 }  # fmt: skip
 
 

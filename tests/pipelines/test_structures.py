@@ -13,6 +13,8 @@ from zrno.pipelines import load, run
 from zrno.pipelines.build_fem import structure_problem
 from zrno.pipelines.check import check
 from zrno.pipelines.cli import app
+from zrno.solvers.materials import cam_clay
+from zrno.solvers.materials.point import drive
 from zrno.translators import read
 from zrno.translators.text import InputError
 
@@ -156,15 +158,13 @@ sets:
     (folder / "strip.yaml").write_text(settings)
     result = run([scene], output=tmp_path / "out", options={"render": []})
     assert result["status"] == "done"
-    frame = load(tmp_path / "out").arrays()
-    place = frame["position"] - frame["displacement"]
-    along = frame["displacement"][:, 0]
-    np.testing.assert_allclose(along, 0.005 * place[:, 0] ** 2, atol=2e-4)
-    (folder / "strip.yaml").write_text(
-        settings.replace("dimension: 2", "dimension: 3").replace("1}}", "1, thickness: 0.1}}")
-    )
-    with pytest.raises(InputError, match="shell elements that expand"):
-        run([scene], output=tmp_path / "shells", options={"render": []})
+    shells = settings.replace("dimension: 2", "dimension: 3").replace("1}}", "1, thickness: 0.1}}")
+    (folder / "strip.yaml").write_text(shells.replace("x y", "all"))
+    run([scene], output=tmp_path / "shells", options={"render": []})
+    for name in ("out", "shells"):
+        frame = load(tmp_path / name).arrays()
+        place = frame["position"] - frame["displacement"]
+        np.testing.assert_allclose(frame["displacement"][:, 0], 0.005 * place[:, 0] ** 2, atol=2e-4)
     cold = settings.replace("thermo_elastic", "elastic").replace("expansion: 0.01, ", "")
     (folder / "strip.yaml").write_text(cold)
     result = run([scene], output=tmp_path / "cold", options={"render": []})
@@ -256,3 +256,28 @@ def test_integration_is_of_motion(scene: Path, tmp_path: Path) -> None:
         said[name] = load(tmp_path / name).arrays(None, -1)["displacement"][:, 2].min()
     assert len(set(said.values())) == 3
     assert max(said.values()) < 0.0
+
+
+@pytest.mark.slow
+def test_cam_clay_from_a_deck_is_the_law_at_a_point(scene: Path, tmp_path: Path) -> None:
+    """Confined compression of two elements, through the deck's model 9: elastic, then on the ellipse as it grows."""
+    numbers = {"E": 1000.0, "nu": 0.3, "M": 1.1, "lambda": 0.15, "kappa": 0.03, "pc": 20.0, "e0": 0.9}
+    said = ", ".join(f"{name}: {value}" for name, value in numbers.items())
+    (scene.parent / "strip.yaml").write_text(f"""
+dimension: 2
+materials: {{strip: {{law: cam_clay, {said}, density: 1}}}}
+sets:
+  clamped: {{fixed: x}}
+  strip: {{fixed: y}}
+  tip: {{displacement: [-0.1, null, null]}}
+fem: {{steps: 10}}
+""")
+    run([scene], output=tmp_path / "out", options={"render": []})
+    assert "    9    1" in (scene.parent / "strip.dat").read_text()
+    strain = np.zeros((10, 6))
+    strain[:, 0] = -0.005
+    path = drive(cam_clay(*numbers.values()), strain)
+    results = load(tmp_path / "out")
+    found = np.array([results.mesh("elements", k).cell_data["stress"][0] for k in range(1, 11)])
+    np.testing.assert_allclose(found[:, :3], path.stress[:, :3], rtol=1e-4)
+    assert path.state[-1, 1] > 0.01  # flows

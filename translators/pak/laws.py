@@ -17,6 +17,7 @@ _PAIR = Layout("7e10.0", "x y a_3 a_4 a_5 a_6 a_7")
 _COUNT = Layout("2i5", "NTFUN INDEP")
 _RAW = Layout("a80", "line")
 _CLAY = Layout("3e10.0,2i5,3e10.0", "E nu AT IEL IKRIT m s Sc")
+_CLAY_STATE = Layout("5e10.0,i5", "AEM ALAM AKA P0 AEE0 KADMB")
 _ELASTIC = Layout("7e10.0", "E nu E_3 E_4 E_5 E_6 E_7")
 _CAP_ELASTIC = Layout("6e10.0,i5", "E nu E_3 E_4 E_5 E_6 E_7")
 _CAP_FAILURE = Layout("7e10.0", "A B C TETA AT AI1A0 F_7")
@@ -75,7 +76,9 @@ _WARM_TABLES = ("E", "nu", "expansion")
 _WARM_PAIR = Layout("2e10.0", "T value")
 _REFERENCE = Layout("7e10.0", "TREF a_2 a_3 a_4 a_5 a_6 a_7")
 OF_LAW = {row.law: model for model, row in reversed(FIXED.items())}
-OF_LAW |= {"thermo_elastic": WARM, "von_mises": 5, "von_mises_power": 6}
+CLAY = 9
+_CLAY_NAMES = {"AEM": "M", "ALAM": "lambda", "AKA": "kappa", "P0": "pc", "AEE0": "e0"}
+OF_LAW |= {"thermo_elastic": WARM, "cam_clay": CLAY, "von_mises": 5, "von_mises_power": 6}
 
 
 def read_law(cards: Cards, material: Material, model: int, points: int, warn: Callable[[str], None]) -> None:
@@ -86,6 +89,8 @@ def read_law(cards: Cards, material: Material, model: int, points: int, warn: Ca
         _read_plastic(cards, material, model, warn)
     elif model == WARM:
         _read_warm(cards, material)
+    elif model == CLAY:
+        _read_clay(cards, material)
     else:
         material.law = ""
         material.native["cards"] = [line.whole().rstrip() for line in _raw_cards(cards, model)]
@@ -175,6 +180,24 @@ def _read_warm(cards: Cards, material: Material) -> None:
         material.native["said"] = dict(material.parameters)
 
 
+def _read_clay(cards: Cards, material: Material) -> None:
+    """Cam-clay's two cards. What its switches mean is not known here: with any of them there is no law with a name."""
+    what = f"a card of material model {CLAY}"
+    first, second = cards.card(_CLAY, what), cards.card(_CLAY_STATE, what)
+    blocks = [first.block, second.block]
+    if first["IKRIT"] == 1:
+        head = cards.card(_COUNT, what)
+        blocks += [head.block, *_lines(cards, head, "NTFUN", what)]
+    cards.faults.stop()
+    material.native["cards"] = [block.whole().rstrip() for block in blocks]
+    material.law = ""
+    if not any(first[name] for name in ("AT", "IEL", "IKRIT", "m", "s", "Sc")) and not second["KADMB"]:
+        material.law = "cam_clay"
+        material.parameters = {"E": first["E"], "nu": first["nu"]}
+        material.parameters |= {own: second[name] for name, own in _CLAY_NAMES.items()}
+        material.native["said"] = dict(material.parameters)
+
+
 def _raw_cards(cards: Cards, model: int) -> Iterator[Block]:
     """The cards of a model that is kept as it is."""
     what = f"a card of material model {model}"
@@ -187,14 +210,6 @@ def _raw_cards(cards: Cards, model: int) -> Iterator[Block]:
             yield head.block
             yield from _lines(cards, head, "NTFUN", what)
         yield cards.block(_RAW, 1, what)
-    elif model == 9:
-        clay = cards.card(_CLAY, what)
-        yield clay.block
-        yield cards.block(_RAW, 1, what)
-        if clay["IKRIT"] == 1:
-            head = cards.card(_COUNT, what)
-            yield head.block
-            yield from _lines(cards, head, "NTFUN", what)
     elif model == 20:
         head = cards.card(_COUNT, what)
         head.check("NTFUN", head["NTFUN"] == 1, "tables of model 20 are not read", "1")
@@ -243,7 +258,7 @@ def law_rows(material: Material, model: int, report: Report) -> Iterator[tuple[L
         yield from material.native["cards"]
         return
     p, native = dict(material.parameters), material.native
-    if model == WARM and native.get("said") == p:
+    if model in (WARM, CLAY) and native.get("said") == p:
         yield from native["cards"]
         return
     tables = dict(material.tables)
@@ -255,6 +270,10 @@ def law_rows(material: Material, model: int, report: Report) -> Iterator[tuple[L
     elif model == WARM:
         yield from _warm_rows(p, what)
         said = {*_WARM_TABLES, "reference_temperature"}
+    elif model == CLAY:
+        said = {"E", "nu", *_CLAY_NAMES.values()}
+        yield _CLAY, {name: _given(p, name, what) for name in ("E", "nu")}
+        yield _CLAY_STATE, {name: _given(p, own, what) for name, own in _CLAY_NAMES.items()}
     else:
         row = FIXED[model]
         said = set(row.names.values())

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..elements.directors import directors
-from ..problem import Elements, Problem
+from ..problem import SMALL, Elements, Problem
 from .bars import BarGroup
 from .beams import BeamGroup
 from .continuum import ContinuumGroup
@@ -16,6 +16,7 @@ from .group import Group
 from .shells import ShellGroup
 from .supports import PointGroup
 from .timed import Maker, TimedGroup, has_life
+from .turning_beams import TurningBeamGroup
 
 Floats = NDArray[np.float64]
 
@@ -23,7 +24,7 @@ _CLASSES: dict[str, Callable[[Elements, Floats], Group]] = {
     "solid": ContinuumGroup,
     "plane": ContinuumGroup,
     "truss": BarGroup,
-    "beam": BeamGroup,
+    "beam": lambda e, x: BeamGroup(e, x) if e.geometry == SMALL else TurningBeamGroup(e, x),
     "spring": PointGroup,
     "mass": PointGroup,
 }
@@ -49,6 +50,8 @@ def _maker(elements: Elements, directors: Floats | None) -> Maker:
         return lambda x, turn: ShellGroup(
             e, x, directors if turn is None else np.einsum("ekij,ekj->eki", turn[e.nodes], directors)
         )
+    if e.family == "beam" and e.geometry != SMALL and has_life(e):
+        raise ValueError("beams that are born or die are computed with small displacements only")
     if e.family not in _CLASSES:
         raise ValueError(f"elements {e.kind} of the family {e.family!r} are not computed")
     return lambda x, _: _CLASSES[e.family](e, x)

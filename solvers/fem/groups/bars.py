@@ -40,9 +40,16 @@ class BarGroup:
         self.energy, self.dissipated, self._work = np.zeros(e), np.zeros(e), np.zeros(e)
         self._scratch, self._kept = np.empty((rows, 2)), np.empty(rows)
         self._offsets = np.empty(0, np.int32)
+        self.warmth = np.zeros(e if elements.expansion else 0)  # committed strain by temperature
+        self._warm: Floats | None = None  # at the step's end, of a run with temperatures
 
     def bind(self, structure: Structure) -> None:
         self._offsets = structure.offsets(self.nodes)
+
+    def warm(self, temperature: Floats) -> None:
+        """What the nodes' temperatures (n,) at the step's end make the bars grow by."""
+        above = temperature[self.nodes].mean(axis=1) - self.elements.reference
+        self._warm = self.elements.expansion * above
 
     def _strain_of(self, shape: Shape) -> Floats:
         moved = shape.u[self.nodes[:, 1], :3] - shape.u[self.nodes[:, 0], :3]
@@ -57,7 +64,8 @@ class BarGroup:
         self._history[:] = self.history
         modulus = np.empty(len(self.nodes))
         el = self.elements
-        advance_uniaxial(el.law, self._step, self.stress, self.trial, self._history, el.density, dt, self._work,
+        seen = self._step if self._warm is None else self._step - (self._warm - self.warmth)
+        advance_uniaxial(el.law, seen, self.stress, self.trial, self._history, el.density, dt, self._work,
                          self._scratch, modulus, self._kept)  # fmt: skip
         small = self.elements.geometry == SMALL
         axis = self._axis
@@ -81,6 +89,8 @@ class BarGroup:
         self.history[:] = self._history
         self.strain += self._step
         self.dissipated += self._work
+        if self._warm is not None:
+            self.warmth[:] = self._warm
 
     def energies(self) -> tuple[float, float]:
         return float(self.energy @ self.volume), float(self.dissipated @ self.volume)
@@ -116,8 +126,9 @@ class BarGroup:
         """Nothing."""
 
     def state(self) -> dict[str, Floats]:
+        warm = {"warmth": self.warmth} if len(self.warmth) else {}
         return {"stress": self.stress, "strain": self.strain, "history": self.history, "energy": self.energy,
-                "dissipated": self.dissipated}  # fmt: skip
+                "dissipated": self.dissipated, **warm}  # fmt: skip
 
     def restore(self, data: dict[str, Floats]) -> None:
         for name, own in self.state().items():

@@ -1,4 +1,6 @@
-"""Straight beams of two nodes: axial force, bending with shear (Timoshenko), torsion; elastic, small displacements."""
+"""Straight beams of two nodes: axial force, bending with shear (Timoshenko), torsion; elastic, small displacements.
+
+Of large ones: `turning_beams`."""
 
 from __future__ import annotations
 
@@ -6,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...materials import Elastic
-from ..problem import SMALL, Elements
+from ..problem import Elements
 from ..shape import Shape
 from ..structure import Structure
 from .group import Bad, Sink
@@ -22,8 +24,8 @@ class BeamGroup:
     """
 
     def __init__(self, elements: Elements, x: Floats) -> None:
-        if not isinstance(elements.law, Elastic) or elements.geometry != SMALL:
-            raise ValueError("beams are computed elastic and with small displacements only")
+        if not isinstance(elements.law, Elastic):
+            raise ValueError("beams are computed elastic only")
         self.elements = elements
         self.x = x
         self.nodes = np.ascontiguousarray(elements.nodes, dtype=np.int64)
@@ -45,6 +47,7 @@ class BeamGroup:
         self.forces, self._trial = np.zeros((len(axis), 12)), np.zeros((len(axis), 12))
         self.energy, self._energy = np.zeros(len(axis)), np.zeros(len(axis))
         self._offsets = np.empty(0, np.int32)
+        self._growth: Floats | None = None  # of their lengths by temperature, of a run with temperatures
 
     def _number(self, name: str, default: float | None = None) -> Floats:
         section = self.elements.section
@@ -90,13 +93,28 @@ class BeamGroup:
     def bind(self, structure: Structure) -> None:
         self._offsets = structure.offsets(self.nodes)
 
+    def warm(self, temperature: Floats) -> None:
+        """What the nodes' temperatures (n,) at the step's end make the beams grow by."""
+        above = temperature[self.nodes].mean(axis=1) - self.elements.reference
+        self._growth = self.elements.expansion * above * self.length
+
     def evaluate(self, shape: Shape, before: Shape, dt: float, sink: Sink) -> None:
-        u = shape.u[self.nodes].reshape(-1, 12)
-        local = np.einsum("epi,ei->ep", self._big, u)
-        self._trial[:] = np.einsum("epq,eq->ep", self._local, local)
-        self._energy[:] = 0.5 * (local * self._trial).sum(axis=1)
+        local = self._moved(shape)
+        if self._growth is None:
+            self._trial[:] = np.einsum("epq,eq->ep", self._local, local)
+            self._energy[:] = 0.5 * (local * self._trial).sum(axis=1)
+        else:
+            stretched = local.copy()
+            stretched[:, 6] -= self._growth
+            self._trial[:] = np.einsum("epq,eq->ep", self._local, stretched)
+            step = local - self._moved(before)
+            self._energy[:] = self.energy + 0.5 * (step * (self.forces + self._trial)).sum(axis=1)
         own = np.einsum("epi,ep->ei", self._big, self._trial).reshape(-1, 2, 6)
         sink.add(self.nodes, self.dofs, self._offsets, np.ascontiguousarray(own.transpose(0, 2, 1)), self._matrix)
+
+    def _moved(self, shape: Shape) -> Floats:
+        """(e, 12) displacements and rotations of the ends in local axes."""
+        return np.einsum("epi,ei->ep", self._big, shape.u[self.nodes].reshape(-1, 12))
 
     def commit(self) -> None:
         self.forces[:] = self._trial

@@ -11,7 +11,7 @@ from ...materials import PLASTIC_STRAIN, state_rows
 from ..elements import mitc3_loops, mitc4_loops, mitc9_loops
 from ..elements.mitc3 import MODES
 from ..elements.points import advance_plane_stress, elastic_modulus
-from ..elements.shapes import table
+from ..elements.shapes import functions, table
 from ..problem import SMALL, Elements
 from ..shape import Shape
 from ..structure import Structure
@@ -41,6 +41,7 @@ class ShellGroup:
         self.directors = np.ascontiguousarray(directors)
         plane = table("quad4", elements.gauss[:2]) if k == 4 else table("quad9") if k == 9 else table("tri6", full=True)
         self._points, self._weights = np.ascontiguousarray(plane.points), plane.weights
+        self._values = plane.values if k > 3 else functions("tri3", plane.points)[0]
         layers = table("line2", (elements.layers,))
         self._layers, self._layer_weights = np.ascontiguousarray(layers.points[:, 0]), layers.weights
         self._root = float(np.sqrt(elements.shear_factor))
@@ -73,9 +74,16 @@ class ShellGroup:
             bad = int(np.argmin(self.point_volume)) // (m // e)
             raise Bad(int(elements.ids[bad]), "its area is not positive: corners that coincide or cross over")
         self.last = Shape(np.zeros((len(x), 6)))
+        self.warmth = np.zeros(m if elements.expansion else 0)  # committed strain by temperature, along the surface
+        self._warm: Floats | None = None  # at the step's end, of a run with temperatures
 
     def bind(self, structure: Structure) -> None:
         self._offsets = structure.offsets(self.nodes)
+
+    def warm(self, temperature: Floats) -> None:
+        """What the nodes' temperatures (n,) at the step's end make the points grow by, as much at all layers."""
+        above = (temperature - self.elements.reference)[self.nodes]
+        self._warm = np.repeat(self.elements.expansion * (above @ self._values.T).ravel(), len(self._layers))
 
     def evaluate(self, shape: Shape, before: Shape, dt: float, sink: Sink) -> None:
         self._history[:] = self.history
@@ -113,8 +121,14 @@ class ShellGroup:
         if not convex.all():
             raise Bad(int(el.ids[lo + int(np.argmin(convex))]), "its four corners are not convex")
         modulus = self._modulus[: (hi - lo) * g]
-        advance_plane_stress(el.law, strain, self.stress[rows], self.trial[rows], self._history, lo * g, el.density, dt,
+        seen = strain
+        if self._warm is not None:  # laws see what is left of the strain
+            seen = strain.copy()
+            seen[:, :2] -= (self._warm[rows] - self.warmth[rows])[:, None]
+        advance_plane_stress(el.law, seen, self.stress[rows], self.trial[rows], self._history, lo * g, el.density, dt,
                              self._work[rows], self._scratch, modulus, self._kept)  # fmt: skip
+        if self._warm is not None:
+            strain[:, 2] = seen[:, 2] + self._warm[rows] - self.warmth[rows]
         forces, matrix = self._forces[: hi - lo], self._matrix[: hi - lo] if sink.stiff else None
         answer, rest = (self._answer[lo:hi], self._rest[lo:hi]) if some else (None, None)
         self._loops.integrate(
@@ -132,6 +146,8 @@ class ShellGroup:
         self.dissipated += self._work
         self.drilled[:] = self._drilled
         self.alpha[:] = self._alpha
+        if self._warm is not None:
+            self.warmth[:] = self._warm
 
     def energies(self) -> tuple[float, float]:
         return float(self.energy @ self.point_volume + self.drilled.sum()), float(self.dissipated @ self.point_volume)
@@ -209,8 +225,9 @@ class ShellGroup:
         self._assembled = None
 
     def state(self) -> dict[str, Floats]:
+        warm = {"warmth": self.warmth} if len(self.warmth) else {}
         return {"stress": self.stress, "strain": self.strain, "history": self.history, "alpha": self.alpha,
-                "energy": self.energy, "dissipated": self.dissipated, "drilled": self.drilled}  # fmt: skip
+                "energy": self.energy, "dissipated": self.dissipated, "drilled": self.drilled, **warm}  # fmt: skip
 
     def restore(self, data: dict[str, Floats]) -> None:
         for name, own in self.state().items():

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fem_meshes import bricks, group, held, plane, problem, quads, ramp, solve
+from fem_meshes import bricks, eight, group, held, plane, problem, quads, ramp, solve
 
 from zrno.solvers import fem
 from zrno.solvers import materials as laws
@@ -109,10 +109,74 @@ def test_what_is_not_computed_says_so() -> None:
     elements = group("hex8", "solid", nodes, LAW, expansion=ALPHA, density=1.0)
     with pytest.raises(ValueError, match="temperatures"):
         fem.Solver(problem(x, elements, held(8, (number[0], "xyz")), temperatures=given, modes=2))
-    x, nodes, number = quads(1, 1, lambda r, s: plane(np.stack([r, s], -1)))
-    shells = group("quad4", "shell", nodes, LAW, thickness=np.ones(1), expansion=ALPHA)
-    with pytest.raises(ValueError, match="shell"):
-        fem.Solver(problem(x, shells, held(4, (number[0], "xyzabc")), temperatures=given))
+    timed = group("hex8", "solid", nodes, LAW, expansion=ALPHA, birth=np.full(1, 0.5))
+    with pytest.raises(ValueError, match="born"):
+        fem.Solver(problem(x, timed, held(8, (number[0], "xyz")), temperatures=given))
+
+
+def _shells(kind: str) -> tuple[Any, Any]:
+    """A distorted plate of 2 x 2 quadrilaterals, or twice as many triangles."""
+    if kind == "quad8":
+        x, nodes, _ = eight(2, 2, lambda r, s: plane(np.stack([2.0 * r, s], -1)))
+        return x, nodes
+    x, nodes, number = quads(2, 2, lambda r, s: plane(np.stack([2.0 * r, s], -1)))
+    x[number[1, 1], :2] += (0.2, -0.1)
+    return x, nodes if kind == "quad4" else np.concatenate([nodes[:, [0, 1, 2]], nodes[:, [0, 2, 3]]])
+
+
+@pytest.mark.parametrize("kind", ["tri3", "quad4", "quad8"])
+def test_a_plate_grows_or_is_pressed(kind: str) -> None:
+    """Free: no stress. Its edges held: -E alpha dT/(1 - nu) along both directions, on both faces."""
+    x, nodes = _shells(kind)
+    thick = np.full(len(nodes), 0.1)
+    left, below = np.flatnonzero(x[:, 0] == 0.0), np.flatnonzero(x[:, 1] == 0.0)
+    free = _warm(x, nodes, held(len(x), (left, "xb"), (below, "ya"), (slice(None), "z")), 50.0, kind=kind,
+                 family="shell", thickness=thick)  # fmt: skip
+    np.testing.assert_allclose(free.shape.u[: len(x), :2], ALPHA * 50.0 * x[:, :2], atol=1e-9 * ALPHA * 50.0)
+    assert np.abs(free.assembly.groups[0].output()["stress_top"]).max() < 1e-9 * E
+    edge = (x[:, 0] % 2.0 == 0.0) | (x[:, 1] % 1.0 == 0.0)
+    walled = _warm(x, nodes, held(len(x), (edge, "xyzabc")), 50.0, kind=kind, family="shell", thickness=thick, steps=2)
+    wanted = -E * ALPHA * 50.0 / (1.0 - NU)
+    for face in ("stress_bottom", "stress_top"):
+        np.testing.assert_allclose(walled.assembly.groups[0].output()[face][:, :2], wanted, rtol=1e-9)
+
+
+@pytest.mark.parametrize("family", ["truss", "beam"])
+def test_a_bar_between_walls(family: str) -> None:
+    """Cold to one side of its middle, so that it grows by the mean: -E alpha dT. Free at an end: no stress."""
+    x = np.array([[0.0, 0, 0], [1.0, 2.0, 2.0], [2.0, 4.0, 4.0]])
+    nodes = np.array([[0, 1], [1, 2]])
+    section = {"area": 2.0, "iyy": 1.0, "izz": 1.0, "j": 1.0}
+    more = {"kind": "line2", "family": family, "section": section, "reference": 10.0}
+    ends = [0, 2] if family == "beam" else [0, 1, 2]
+    walled = _warm(x, nodes, held(3, (ends, "xyzabc")), [10.0, 60.0, 10.0], steps=2, **more)
+    np.testing.assert_allclose(walled.assembly.groups[0].output()["stress"][:, 0], -E * ALPHA * 25.0, rtol=1e-9)
+    free = _warm(x[:2] * [1, 0, 0], nodes[:1], held(2, ([0], "xyzabc"), ([1], "yz")), 60.0, steps=2, **more)
+    np.testing.assert_allclose(free.shape.u[1, 0], ALPHA * 50.0, rtol=1e-9)
+    assert abs(free.assembly.groups[0].output()["stress"]).max() < 1e-9 * E
+    assert max(s.energy_report()["balance_error"] for s in (walled, free)) < 1e-6
+
+
+@pytest.mark.parametrize("more", [{}, {"modes": 12}], ids=str)
+def test_a_linear_structure_is_factored_once(more: dict[str, Any]) -> None:
+    """Two metals on each other, warmed in ten steps: what one step gives, and the bow of Timoshenko's bimetal."""
+    x, nodes, number = bricks(24, 1, 4, (12.0, 0.5, 1.0))
+    low = np.flatnonzero(x[nodes].mean(axis=1)[:, 2] < 0.5)
+    high = np.setdiff1d(np.arange(len(nodes)), low)
+    law = Elastic.from_engineering(E, 0.0)
+    parts = tuple(group("hex8", "solid", nodes[rows], law, expansion=growth, **more)
+                  for rows, growth in ((low, ALPHA), (high, 3.0 * ALPHA)))  # fmt: skip
+    fixed = held(len(x), (number[0], "x"), (number[:, 0], "y"), (number[0, :, 0], "z"))
+    warm = fem.Temperature(np.arange(len(x)), np.full(len(x), 50.0), 0)
+    found = []
+    for steps in (1, 10):
+        solver, _ = solve(problem(x, parts, fixed, temperatures=(warm,), curves=(ramp(),), steps=((steps, 1 / steps),)))
+        assert solver.assembly.system.factorisations == 1
+        found.append(solver.shape.u)
+    np.testing.assert_allclose(found[1], found[0], atol=1e-9 * np.abs(found[0]).max())
+    if more:  # plain bricks lock in bending
+        bow = 1.5 * 2.0 * ALPHA * 50.0 / 1.0  # 24 (a2 - a1) dT/(16 h), equal moduli and thicknesses
+        assert found[0][number[-1, 0, 2], 2] == pytest.approx(-0.5 * bow * 12.0**2, rel=5e-3)
 
 
 # NAFEMS LE11: a sphere's zone, a cone and a cylinder, a quarter; T = sqrt(x^2 + y^2) + z, held along z at both ends

@@ -176,6 +176,7 @@ def test_tetrahedra_have_one_point_and_wedges_no_incompatible_modes(tmp_path: Pa
         ("drucker_prager", {"E": 100.0, "nu": 0.25, "k": 0.25, "alpha": 0.05, "tension_cutoff": 0.5, "X0": 2.0,
                             "W": 0.1, "D": 0.2, "R": 3.0}, 41, 0),
         ("mohr_coulomb", {"E": 100.0, "nu": 0.25, "c": 1.0, "phi": 30.0, "psi": 15.0}, 42, 0),
+        ("cam_clay", {"E": 100.0, "nu": 0.25, "M": 1.1, "lambda": 0.15, "kappa": 0.03, "pc": 0.2, "e0": 0.9}, 9, 0),
     ],
 )  # fmt: skip
 def test_laws(
