@@ -14,6 +14,8 @@ from numba.core.errors import RequireLiteralValue
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
+from .jit import kernel
+
 LANES = 8  # rows brought at once, and columns of a cache line
 ROOM = 128  # rows of a buffer: most particles have fewer neighbours
 
@@ -30,6 +32,14 @@ def table(rows: int) -> NDArray[np.float64]:
     raw = np.zeros((rows + 1) * LANES)
     at = -raw.ctypes.data // 8 % LANES
     return raw[at : at + rows * LANES].reshape(rows, LANES)
+
+
+@kernel
+def buffer():
+    """(LANES, ROOM) for `gather`, its rows at whole cache lines: vectors that lie across two take half as long again."""
+    raw = np.empty((ROOM + 1) * LANES)
+    at = -raw.ctypes.data // 8 % LANES
+    return raw[at : at + ROOM * LANES].reshape(LANES, ROOM)
 
 
 @intrinsic(prefer_literal=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..bits import bits_of, of_bits
-from ..gather import LANES, ROOM, gather
+from ..gather import LANES, ROOM, buffer, gather
 from ..jit import kernel
 from .pairs import TINY
 from .smoothing import inverse_root, shape_slope, shape_value
@@ -30,11 +30,11 @@ def momentum(
     part of the acceleration. It is the term of Monaghan (2000) and Gray, Monaghan & Swift (2001), taken along the pair,
     where the instability W'' sigma > 0 lives, in place of the principal axes: central, so that it turns nothing.
     """
-    near = np.empty((LANES, ROOM))
+    near = buffer()
     x = near[0]
     y = near[1]
     if z is not None:
-        more = np.empty((LANES, ROOM))
+        more = buffer()
         weights = more[0]
         size = more[1]
         sxx = near[2]

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..gather import LANES, ROOM, gather
+from ..gather import LANES, ROOM, buffer, gather
 from ..jit import kernel
 from .smoothing import inverse_root, shape_slope
 
@@ -38,7 +38,7 @@ def velocity_gradient(
     the shape matrix sum_j V_j (x_j - x_i) (x) grad_i W_ij, which then makes the gradient exact for linear fields
     (Randles & Libersky 1996): grad v B.
     """
-    near = np.empty((LANES, ROOM))
+    near = buffer()
     x = near[0]
     y = near[1]
     if solid is not None:

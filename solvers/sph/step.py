@@ -157,7 +157,6 @@ def advance(
     i0, i1 = share(n, thread, threads)
     chunk = n if threads == 1 else CHUNK
     chunks = (n + chunk - 1) // chunk
-    taken = 0
     time = progress[TIME]
     last = progress[LAST]
     dt = progress[NEXT]
@@ -181,7 +180,7 @@ def advance(
                     rings.flow(offset + g0, offset + g1, hoop, arrays)
                     barrier(sync, threads)
                 pack_motion(thread, threads, sync, 0, solid, h, hoop, plain, arrays)
-                c = claim(sync, taken)
+                c = claim(sync, thread, threads, chunks)
                 while c < chunks:
                     end = min(n, (c + 1) * chunk)
                     a, b = rest.run_of(c * chunk, end, resting, rest.HELD, arrays.still)
@@ -195,8 +194,7 @@ def advance(
                         if resting is not None:
                             rest.no_diffusion(a, b, density_rate, stress_rate, arrays)
                         a, b = rest.run_of(b, end, resting, rest.HELD, arrays.still)
-                    c = claim(sync, taken)
-                taken += chunks + threads
+                    c = claim(sync, thread, threads, chunks)
                 barrier(sync, threads)  # the strain of all particles needs the old volumes
             # at the very start without strain: what an equation of state makes of the first densities
             a, b = rest.run_of(i0, i1, resting, rest.HELD, arrays.still)
@@ -247,7 +245,7 @@ def advance(
             if resting is not None:
                 look = (int(progress[STEPS]) + done) % rest.LOOK == 0
             most = rest.DEEP if look else rest.HELD
-            c = claim(sync, taken)
+            c = claim(sync, thread, threads, chunks)
             while c < chunks:
                 end = min(n, (c + 1) * chunk)
                 at = c * chunk
@@ -265,8 +263,7 @@ def advance(
                     a, b = rest.run_of(b, end, resting, most, arrays.still)
                 if resting is not None:
                     least = min(least, critical_step(at, end, z, wave, numbers, arrays))
-                c = claim(sync, taken)
-            taken += chunks + threads
+                c = claim(sync, thread, threads, chunks)
             arrays.reduced[thread, 2] = least
             barrier(sync, threads)
             dt = numbers.step_factor * arrays.reduced[:threads, 2].min()
@@ -319,13 +316,12 @@ def advance(
                 g0, g1 = share(len(image_source), thread, threads)
                 ghosts.follow_motion(g0, g1, offset, z, image_source, image_sign, image_shift, arrays)
                 barrier(sync, threads)
-            c = claim(sync, taken)
+            c = claim(sync, thread, threads, chunks)
             while c < chunks:
                 cures.smoothed_velocity(
                     c * chunk, min(n, (c + 1) * chunk), z, shape, smoothing, arrays, numbers, smoothed
                 )
-                c = claim(sync, taken)
-            taken += chunks + threads
+                c = claim(sync, thread, threads, chunks)
             barrier(sync, threads)
         moved = 0.0
         bad = -1.0

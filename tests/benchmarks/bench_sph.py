@@ -23,6 +23,7 @@ from zrno.solvers.jit import compile_seconds  # noqa: E402
 from zrno.solvers.materials import Elastic  # noqa: E402
 from zrno.solvers.neighbours import Cells  # noqa: E402
 from zrno.solvers.sph import Body, Problem, Solver, momentum, packed, pairs, particle  # noqa: E402
+from zrno.solvers.threads import meeting  # noqa: E402
 
 STEPS = 100
 
@@ -73,7 +74,7 @@ def phases(problem: Problem, builds: float) -> dict[str, float]:
     s.advance(1e9, 60)
     a, k, n = s._arrays(), s._numbers, s.n
     law = s._laws[0]
-    sync = np.zeros(3, np.int64)
+    sync = meeting(1)
     radius = s._shape.support * float(problem.h.max())
     assert a.x_list is not None
     cells = Cells(n, a.x_list, a.y_list, a.z_list, radius + s._skin)

@@ -14,8 +14,9 @@ from zrno.solvers.materials import Elastic
 from zrno.solvers.sph import Cures, Plane, Problem, Solver, bearing, packed, pairs, particle
 from zrno.solvers.sph.ghosts import SYMMETRY
 from zrno.solvers.sph.step import INSTANT
+from zrno.solvers.threads import meeting
 
-NOBODY = np.zeros(3, np.int64)  # to wait for
+NOBODY = meeting(1)  # to wait for
 
 
 def gradients(problem: Problem, slope: np.ndarray) -> np.ndarray:
