@@ -14,10 +14,8 @@ from numba.core.errors import RequireLiteralValue
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
-from .jit import kernel
-
 LANES = 8  # rows brought at once, and columns of a cache line
-ROOM = 128  # rows of a buffer: most particles have fewer neighbours
+ROOM = 128  # entries of a buffer's columns: most particles have fewer neighbours
 
 # transposing: blocks of four lanes, of two, single ones
 _SWAPS = (
@@ -34,12 +32,12 @@ def table(rows: int) -> NDArray[np.float64]:
     return raw[at : at + rows * LANES].reshape(rows, LANES)
 
 
-@kernel
-def buffer():
-    """(LANES, ROOM) for `gather`, in whole cache lines: where vectors lay across two, loops took 10 to 15 % longer."""
-    raw = np.empty((ROOM + 1) * LANES)
-    at = -raw.ctypes.data // 8 % LANES
-    return raw[at : at + ROOM * LANES].reshape(LANES, ROOM)
+def buffers(threads: int) -> NDArray[np.float64]:
+    """(threads, 2, LANES, ROOM): two buffers for each thread, in whole cache lines.
+
+    Where vectors lay across two lines, loops took 10 to 15 % longer.
+    """
+    return table(threads * 2 * ROOM).reshape(threads, 2, LANES, ROOM)
 
 
 @intrinsic(prefer_literal=True)

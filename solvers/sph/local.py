@@ -187,6 +187,7 @@ def advance(
     j0, j1 = share(n - split, thread, threads)
     j0 += split
     j1 += split
+    near = arrays.near[thread]
     chunk = n if threads == 1 else step.CHUNK
     slow_chunks = (split + chunk - 1) // chunk
     fast_chunks = (n - split + chunk - 1) // chunk
@@ -224,7 +225,7 @@ def advance(
                         a = split + (c - slow_chunks) * chunk
                         b = min(n, a + chunk)
                     step.strain(
-                        a, b, n, None, shape, solid, h, line, correction, density_rate, stress_rate, plain, None,
+                        a, b, n, None, shape, near, solid, h, line, correction, density_rate, stress_rate, plain, None,
                         reference, last if c < slow_chunks else fast_last, arrays, numbers,
                     )  # fmt: skip
                     c = from_chunk + claim(sync, thread, threads, chunks - from_chunk)
@@ -280,8 +281,8 @@ def advance(
                     )  # fmt: skip
                 since = last if c < slow_chunks else fast_last
                 own = step.force(
-                    a, b, shape, z, h, mass, nearest, line, None, None, None, correction, bx, artificial, heat, None,
-                    wave, None, None, None, None, None, None, None, plain, None, correction, reference,
+                    a, b, shape, near, z, h, mass, nearest, line, None, None, None, correction, bx, artificial, heat,
+                    None, wave, None, None, None, None, None, None, None, plain, None, correction, reference,
                     None, None, None, since, arrays, numbers,
                 )  # fmt: skip
                 if c < slow_chunks:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..gather import LANES, table
+from ..gather import LANES, buffers, table
 from ..jit import kernel
 from ..neighbours import NeighbourList
 from ..threads import run, share
@@ -37,7 +37,7 @@ class Arrays(NamedTuple):
     push (2 d, m): the speed that a sleeper was pushed to, and its acceleration when it fell asleep.
     interface (0 | 1, m): see `across.interface_speed`. impulse, thrust (d, m): of what is driven, see `driving`;
     face_slip: friction on facets, see `facing`. relaxed (0 | 1, m): energy that dynamic relaxation took.
-    packed, beside (m, 8): see `packed`.
+    packed, beside (m, 8): see `packed`; near: buffers for them, see `gather`.
     """
 
     x: Any
@@ -117,6 +117,7 @@ class Arrays(NamedTuple):
     relaxed: Any
     packed: Any
     beside: Any
+    near: Any
 
 
 class Numbers(NamedTuple):
@@ -401,4 +402,5 @@ class State:
             relaxed=self.rows("relaxed"),
             packed=self.packed,
             beside=self.beside,
+            near=buffers(len(reduced)),
         )

@@ -29,7 +29,7 @@ PROGRESS = 7
 # why `advance` came back
 REACHED, PAUSED, REBUILD, BROKEN, COLLAPSED, FAILED = range(6)
 
-CHUNK = 256  # particles that a thread takes on at a time
+CHUNK = 128  # particles that a thread takes on at a time
 
 LANDING = 8  # so many steps before a wanted time the step is trimmed to meet it
 GROWTH = 1.1  # a step grows by no more than this
@@ -40,14 +40,17 @@ COLLAPSE = 1e-7  # a step this small beside the first one will not recover
 
 @kernel
 def strain(
-    i0, i1, offset, source, shape, solid, h, line, correction, density_rate, stress_rate, plain, hoop, reference, dt,
-    arrays, numbers,
+    i0, i1, offset, source, shape, near, solid, h, line, correction, density_rate, stress_rate, plain, hoop, reference,
+    dt, arrays, numbers,
 ):  # fmt: skip
-    """Velocity gradients of a range of particles, and the rates of diffusion, all with the old densities."""
+    """Velocity gradients of a range of particles, and the rates of diffusion, all with the old densities.
+
+    near: (2, .) the thread's own buffers, see `gather`.
+    """
     if plain is not None:
         pairs.velocity_gradient(
-            i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.packed, solid, h, numbers.inverse_h2,
-            numbers.scale, line, arrays.gradient, correction,
+            i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.packed, near[0], solid, h,
+            numbers.inverse_h2, numbers.scale, line, arrays.gradient, correction,
         )  # fmt: skip
     if hoop is not None:
         rings.radial_strain(i0, i1, arrays)
@@ -66,9 +69,11 @@ def strain(
 
 
 @kernel
-def force(i0, i1, shape, z, h, mass, nearest, line, cx, contact, mixed, correction, bx, artificial, heat, body_work,
-          wave, friction, damping, normals, by_normals, planes, wall_slip, contact_heat, plain, hoop, rows_apart,
-          reference, driven, faces, face_slip, dt, arrays, numbers):  # fmt: skip
+def force(
+    i0, i1, shape, near, z, h, mass, nearest, line, cx, contact, mixed, correction, bx, artificial, heat, body_work,
+    wave, friction, damping, normals, by_normals, planes, wall_slip, contact_heat, plain, hoop, rows_apart, reference,
+    driven, faces, face_slip, dt, arrays, numbers,
+):  # fmt: skip
     """Accelerations of a range of particles; returns their critical step."""
     if mixed is not None:
         weight = arrays.volume
@@ -83,8 +88,8 @@ def force(i0, i1, shape, z, h, mass, nearest, line, cx, contact, mixed, correcti
         body = rings.NO_FORCE
     if plain is not None:
         momentum(
-            i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.packed, arrays.beside, z, arrays.s, weight,
-            h, numbers.inverse_h2, scale, line, body, arrays.ax, arrays.ay, arrays.az, nearest, density,
+            i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.packed, arrays.beside, near[0], near[1], z,
+            weight, h, numbers.inverse_h2, scale, line, body, arrays.ax, arrays.ay, arrays.az, nearest, density,
             rows_apart, artificial, numbers.inverse_w, bx, arrays.by, arrays.bz,
         )  # fmt: skip
     if hoop is not None:
@@ -155,6 +160,7 @@ def advance(
     wanted anew. resting: None, or `rest.Resting`.
     """
     i0, i1 = share(n, thread, threads)
+    near = arrays.near[thread]
     chunk = n if threads == 1 else CHUNK
     chunks = (n + chunk - 1) // chunk
     time = progress[TIME]
@@ -186,8 +192,8 @@ def advance(
                     a, b = rest.run_of(c * chunk, end, resting, rest.HELD, arrays.still)
                     while a < b:
                         strain(
-                            a, b, offset, image_source, shape, solid, h, line, correction, density_rate, stress_rate,
-                            plain, hoop, reference, last, arrays, numbers,
+                            a, b, offset, image_source, shape, near, solid, h, line, correction, density_rate,
+                            stress_rate, plain, hoop, reference, last, arrays, numbers,
                         )  # fmt: skip
                         if walled is not None and driven is not None:
                             bearing.without_walls(a, b, solid, shape, correction, arrays, numbers)
@@ -255,8 +261,8 @@ def advance(
                         least = min(least, critical_step(at, a, z, wave, numbers, arrays))
                         at = b
                     part = force(
-                        a, b, shape, z, h, mass, nearest, line, cx, contact, mixed, correction, bx, artificial, heat,
-                        body_work, wave, friction, damping, normals, by_normals, planes, wall_slip, contact_heat,
+                        a, b, shape, near, z, h, mass, nearest, line, cx, contact, mixed, correction, bx, artificial,
+                        heat, body_work, wave, friction, damping, normals, by_normals, planes, wall_slip, contact_heat,
                         plain, hoop, rows_apart, reference, driven, faces, face_slip, last, arrays, numbers,
                     )  # fmt: skip
                     least = min(least, part)

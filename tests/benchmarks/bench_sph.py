@@ -81,12 +81,12 @@ def phases(problem: Problem, builds: float) -> dict[str, float]:
     return {
         "velocity gradient": nanoseconds(
             lambda: pairs.velocity_gradient(
-                0, n, a.first, a.count, a.rows, s._shape, a.packed, True, None, k.inverse_h2, k.scale, None, a.gradient,
-                None,
+                0, n, a.first, a.count, a.rows, s._shape, a.packed, a.near[0, 0], True, None, k.inverse_h2,
+                k.scale, None, a.gradient, None,
             ), n),
         "momentum": nanoseconds(
             lambda: momentum.momentum(
-                0, n, a.first, a.count, a.rows, s._shape, a.packed, a.beside, a.z, a.s, None, None, k.inverse_h2,
+                0, n, a.first, a.count, a.rows, s._shape, a.packed, a.beside, *a.near[0], a.z, None, None, k.inverse_h2,
                 k.force_scale, None, k.body, a.ax, a.ay, a.az, a.nearest, None, None, None, 1.0, None, None, None,
             ), n),
         "packing": nanoseconds(lambda: packed.pack_motion(0, 1, sync, 0, True, None, None, True, a), n)
