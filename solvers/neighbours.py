@@ -214,18 +214,30 @@ def _fill(
     other,
     first,
     count,
+    old_rows,
+    old_room,
     rows,
     room,
     needed,
     dummy,
 ):
-    b = claim(sync, 0)
+    """Rows of all blocks. needed: what each needs, or -1; what had room in the old rows is copied from there."""
+    b = claim(sync, thread, threads, len(needed))
     while b < len(needed):
-        needed[b] = _fill_rows(
-            b * BLOCK, min(n, (b + 1) * BLOCK), n, x, y, z, h, reach, h_max, origin, size, shape, start, group, other,
-            first, count, rows, room[b], room[b + 1], dummy,
-        )  # fmt: skip
-        b = claim(sync, 0)
+        i0 = b * BLOCK
+        i1 = min(n, i0 + BLOCK)
+        if 0 <= needed[b] <= old_room[b + 1] - old_room[b]:
+            shift = room[b] - old_room[b]
+            for k in range(old_room[b], old_room[b] + needed[b]):
+                rows[k + shift] = old_rows[k]
+            for i in range(i0, i1):
+                first[i] += shift
+        else:
+            needed[b] = _fill_rows(
+                i0, i1, n, x, y, z, h, reach, h_max, origin, size, shape, start, group, other, first, count, rows,
+                room[b], room[b + 1], dummy,
+            )  # fmt: skip
+        b = claim(sync, thread, threads, len(needed))
 
 
 def blocks(n: int) -> int:
@@ -303,18 +315,20 @@ class NeighbourList:
         pairs of one body only, or of different bodies only. dummy: pads the rows; by default the number of points.
         """
         reach = skin if h is not None else radius + skin
-        needed = np.zeros(blocks(self.n), np.int64)
+        needed = np.full(blocks(self.n), -1)
+        rows, room = self.rows, self._room
         while True:
             run(
                 _fill, threads, cells.n, x, y, z, h, reach, radius, cells.origin, cells.size, cells.shape, cells.start,
-                group, other, self.first, self.count, self.rows, self._room, needed,
+                group, other, self.first, self.count, self.rows, self._room, rows, room, needed,
                 cells.n if dummy is None else dummy,
             )  # fmt: skip
-            if np.all(needed <= np.diff(self._room)):
+            self.rows, self._room = rows, room
+            if np.all(needed <= np.diff(room)):
                 return
             roomy = (needed * 1.1).astype(np.int64) // LANES * LANES + 4 * LANES
-            self._room[1:] = np.cumsum(roomy)
-            self.rows = np.empty(int(self._room[-1]), np.uint32)
+            room = np.concatenate(([0], np.cumsum(roomy)))
+            rows = np.empty(int(room[-1]), np.uint32)
 
     def build_mapped(
         self,

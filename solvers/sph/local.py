@@ -187,10 +187,10 @@ def advance(
     j0, j1 = share(n - split, thread, threads)
     j0 += split
     j1 += split
+    near = arrays.near[thread]
     chunk = n if threads == 1 else step.CHUNK
     slow_chunks = (split + chunk - 1) // chunk
     fast_chunks = (n - split + chunk - 1) // chunk
-    taken = 0
     time = progress[step.TIME]
     last = progress[step.LAST]
     dt = progress[step.NEXT]
@@ -216,7 +216,7 @@ def advance(
             chunks = slow_chunks + fast_chunks
             if last > 0.0 or not begins:
                 packed.pack_motion(thread, threads, sync, 0 if begins else split, solid, h, None, plain, arrays)
-                c = from_chunk + claim(sync, taken)
+                c = from_chunk + claim(sync, thread, threads, chunks - from_chunk)
                 while c < chunks:
                     if c < slow_chunks:
                         a = c * chunk
@@ -225,11 +225,10 @@ def advance(
                         a = split + (c - slow_chunks) * chunk
                         b = min(n, a + chunk)
                     step.strain(
-                        a, b, n, None, shape, solid, h, line, correction, density_rate, stress_rate, plain, None,
+                        a, b, n, None, shape, near, solid, h, line, correction, density_rate, stress_rate, plain, None,
                         reference, last if c < slow_chunks else fast_last, arrays, numbers,
                     )  # fmt: skip
-                    c = from_chunk + claim(sync, taken)
-                taken += chunks - from_chunk + threads
+                    c = from_chunk + claim(sync, thread, threads, chunks - from_chunk)
                 barrier(sync, threads)
             torn = _laws(
                 j0,
@@ -266,7 +265,7 @@ def advance(
             )  # fmt: skip
             slow_least = np.inf
             fast_least = np.inf
-            c = from_chunk + claim(sync, taken)
+            c = from_chunk + claim(sync, thread, threads, chunks - from_chunk)
             while c < chunks:
                 if c < slow_chunks:
                     a = c * chunk
@@ -282,8 +281,8 @@ def advance(
                     )  # fmt: skip
                 since = last if c < slow_chunks else fast_last
                 own = step.force(
-                    a, b, shape, z, h, mass, nearest, line, None, None, None, correction, bx, artificial, heat, None,
-                    wave, None, None, None, None, None, None, None, plain, None, correction, reference,
+                    a, b, shape, near, z, h, mass, nearest, line, None, None, None, correction, bx, artificial, heat,
+                    None, wave, None, None, None, None, None, None, None, plain, None, correction, reference,
                     None, None, None, since, arrays, numbers,
                 )  # fmt: skip
                 if c < slow_chunks:
@@ -300,8 +299,7 @@ def advance(
                     if begins:  # the lists are to hold for the whole outer step
                         reach = _reach_in_time(a, b, z, arrays)
                         slow_least = min(slow_least, across.CLOSING * reach / numbers.step_factor)
-                c = from_chunk + claim(sync, taken)
-            taken += chunks - from_chunk + threads
+                c = from_chunk + claim(sync, thread, threads, chunks - from_chunk)
             arrays.reduced[thread, 2] = slow_least
             arrays.reduced[thread, 4] = fast_least
             barrier(sync, threads)

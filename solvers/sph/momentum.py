@@ -6,90 +6,40 @@ import numpy as np
 
 from ..bits import bits_of, of_bits
 from ..gather import LANES, ROOM, gather
-from ..jit import kernel
+from ..jit import inlined_kernel
+from .packed import stress_of, weight_of
 from .pairs import TINY
 from .smoothing import inverse_root, shape_slope, shape_value
 
 ALONE = np.int64(0x7E37E43C8800759C)  # the bits of 1e300: the squared distance of a particle without neighbours
 
 
-@kernel
+@inlined_kernel
 def momentum(
-    i0, i1, first, count, rows, shape, packed, beside, z, s, weight, h, inverse_h2, scale, line, body, ax, ay, az,
-    nearest, density, corrected, artificial, inverse_w, bx, by, bz,
+    i0, i1, first, count, rows, shape, packed, beside, near, more, z, weight, h, inverse_h2, scale, line, body, ax, ay,
+    az, nearest, density, corrected, artificial, inverse_w, bx, by, bz,
 ):  # fmt: skip
     """a_i = sum_j m_j (s_i + s_j) . grad_i W_ij + g: the sum form that conserves momentum pair by pair.
 
     weight: masses, or None where all are equal and in the scale. Where bodies differ in density the sum is
     a_i = sum_j V_j (sigma_i + sigma_j) / rho_i . grad_i W_ij instead: the one whose work is that of the velocity
-    gradient above; then s is the stress, the weights are the volumes and density is given. body: (3,) g. nearest: None,
+    gradient; then s is the stress, the weights are the volumes and density is given. body: (3,) g. nearest: None,
     or (n + 1,) the squared distance to the nearest listed particle. corrected: None, or anything where s is s B.
+    near, more: buffers for the lines of the two tables.
 
     artificial: None, or the factor e of the artificial stress: the part of a pair's force that pulls the two together
     is lessened by e f^4, f = W(r)/W(spacing), inverse_w being the inverse of the latter's value; bx.. then keep that
     part of the acceleration. It is the term of Monaghan (2000) and Gray, Monaghan & Swift (2001), taken along the pair,
     where the instability W'' sigma > 0 lives, in place of the principal axes: central, so that it turns nothing.
     """
-    near = np.empty((LANES, ROOM))
     x = near[0]
     y = near[1]
-    if z is not None:
-        more = np.empty((LANES, ROOM))
-        weights = more[0]
-        size = more[1]
-        sxx = near[2]
-        if corrected is not None:
-            sxy = near[3]
-            sxz = near[4]
-            syx = near[5]
-            syy = near[6]
-            syz = near[7]
-            szx = more[2]
-            szy = more[3]
-            szz = more[4]
-        else:
-            syy = near[3]
-            szz = near[4]
-            sxy = near[5]
-            syz = near[6]
-            szx = near[7]
-    else:
-        weights = near[2]
-        size = near[3]
-        sxx = near[4]
-        if corrected is not None:
-            sxy = near[5]
-            syx = near[6]
-            syy = near[7]
-        else:
-            syy = near[5]
-            sxy = near[6]
+    weights, size = weight_of(near, more, z)
+    sxx, sxy, sxz, syx, syy, syz, szx, szy, szz = stress_of(near, more, z, corrected)
     for i in range(i0, i1):
         xi = packed[i, 0]
         yi = packed[i, 1]
-        xxi = s[0, i]
-        if corrected is not None:
-            xyi = s[1, i]
-            if z is not None:
-                xzi = s[2, i]
-                yxi = s[3, i]
-                yyi = s[4, i]
-                yzi = s[5, i]
-                zxi = s[6, i]
-                zyi = s[7, i]
-                zzi = s[8, i]
-            else:
-                yxi = s[2, i]
-                yyi = s[3, i]
-        else:
-            yyi = s[1, i]
-            if z is not None:
-                zzi = s[2, i]
-                xyi = s[3, i]
-                yzi = s[4, i]
-                zxi = s[5, i]
-            else:
-                xyi = s[2, i]
+        xxi, xyi, xzi, yxi, yyi, yzi, zxi, zyi, zzi = stress_of(packed[i], beside[i], z, corrected)
         a0 = 0.0
         a1 = 0.0
         if z is not None:
@@ -148,25 +98,13 @@ def momentum(
                 factor *= shape_slope(shape, q2 * iq, iq)
                 gx = dx * factor
                 gy = dy * factor
-                xy = xyi + sxy[k]
-                yx = xy
-                if corrected is not None:
-                    yx = yxi + syx[k]
-                fx = (xxi + sxx[k]) * gx + xy * gy
-                fy = yx * gx + (yyi + syy[k]) * gy
+                fx = (xxi + sxx[k]) * gx + (xyi + sxy[k]) * gy
+                fy = (yxi + syx[k]) * gx + (yyi + syy[k]) * gy
                 if z is not None:
                     gz = dz * factor
-                    yz = yzi + syz[k]
-                    zx = zxi + szx[k]
-                    if corrected is not None:
-                        xz = xzi + sxz[k]
-                        zy = zyi + szy[k]
-                    else:
-                        xz = zx
-                        zy = yz
-                    fx += xz * gz
-                    fy += yz * gz
-                    fz = zx * gx + zy * gy + (zzi + szz[k]) * gz
+                    fx += (xzi + sxz[k]) * gz
+                    fy += (yzi + syz[k]) * gz
+                    fz = (zxi + szx[k]) * gx + (zyi + szy[k]) * gy + (zzi + szz[k]) * gz
                     a2 += fz
                 a0 += fx
                 a1 += fy

@@ -18,6 +18,34 @@ REST = 2  # where the rest of it begins
 
 
 @kernel
+def motion_of(line, solid):
+    """x y z u v w volume h, those of z None in the plane. line: a row of the table, or the columns of a buffer."""
+    if solid is not None:
+        return line[0], line[1], line[2], line[3], line[4], line[5], line[6], line[7]
+    return line[0], line[1], None, line[2], line[3], None, line[4], line[5]
+
+
+@kernel
+def weight_of(line, more, solid):
+    """Weight and h. line, more: columns of buffers for the two tables."""
+    if solid is not None:
+        return more[0], more[1]
+    return line[2], line[3]
+
+
+@kernel
+def stress_of(line, more, solid, corrected):
+    """s row by row: xx xy xz yx yy yz zx zy zz, those of z None in the plane. line, more: as in both of the above."""
+    if solid is not None:
+        if corrected is not None:
+            return line[2], line[3], line[4], line[5], line[6], line[7], more[2], more[3], more[4]
+        return line[2], line[5], line[7], line[5], line[3], line[6], line[7], line[6], line[4]
+    if corrected is not None:
+        return line[4], line[5], None, line[6], line[7], None, None, None, None
+    return line[4], line[6], None, line[6], line[5], None, None, None, None
+
+
+@kernel
 def pack_motion(thread, threads, sync, start, solid, h, hoop, plain, arrays):
     """What `velocity_gradient` reads, of all entries from `start` on. The threads meet after it.
 

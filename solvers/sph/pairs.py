@@ -17,7 +17,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..gather import LANES, ROOM, gather
-from ..jit import kernel
+from ..jit import inlined_kernel
+from .packed import motion_of
 from .smoothing import inverse_root, shape_slope
 
 TINY = 1e-30  # keeps the inverse root of coincident particles finite
@@ -28,42 +29,19 @@ WELL = 2e-3  # a shape matrix whose determinant is this small beside its mean ei
 SEEN = 0.02
 
 
-@kernel
+@inlined_kernel
 def velocity_gradient(
-    i0, i1, first, count, rows, shape, packed, solid, h, inverse_h2, scale, line, gradient, correction
+    i0, i1, first, count, rows, shape, packed, near, solid, h, inverse_h2, scale, line, gradient, correction
 ):
-    """grad v_i = sum_j V_j (v_j - v_i) (x) grad_i W_ij ([T] 4.6.1.13), of the packed motion.
+    """grad v_i = sum_j V_j (v_j - v_i) (x) grad_i W_ij ([T] 4.6.1.13), of the packed motion. near: a buffer.
 
     solid: None in the plane; h: None where all are equal. correction: None, or (6 | 3, n + 1) for the inverse B of
     the shape matrix sum_j V_j (x_j - x_i) (x) grad_i W_ij, which then makes the gradient exact for linear fields
     (Randles & Libersky 1996): grad v B.
     """
-    near = np.empty((LANES, ROOM))
-    x = near[0]
-    y = near[1]
-    if solid is not None:
-        z = near[2]
-        u = near[3]
-        v = near[4]
-        w = near[5]
-        volume = near[6]
-        size = near[7]
-    else:
-        u = near[2]
-        v = near[3]
-        volume = near[4]
-        size = near[5]
+    x, y, z, u, v, w, volume, size = motion_of(near, solid)
     for i in range(i0, i1):
-        xi = packed[i, 0]
-        yi = packed[i, 1]
-        if solid is not None:
-            zi = packed[i, 2]
-            ui = packed[i, 3]
-            vi = packed[i, 4]
-            wi = packed[i, 5]
-        else:
-            ui = packed[i, 2]
-            vi = packed[i, 3]
+        xi, yi, zi, ui, vi, wi, _, _ = motion_of(packed[i], solid)
         ux = 0.0
         uy = 0.0
         vx = 0.0

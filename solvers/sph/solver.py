@@ -158,8 +158,8 @@ class Solver:
             reason = self._run_kernel(until, wanted - self.step, pause)
             if reason == step.REBUILD:
                 self._rebuild()
-                self._run_kernel(until, 0)
-                if self.time >= pause:
+                if self.step == wanted or self.time >= pause:
+                    self._run_kernel(until, 0)
                     break
             elif reason == step.BROKEN:
                 raise blame.broken(self._state, self.step + 1, int(self._progress[step.BAD]))

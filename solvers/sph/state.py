@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..gather import table
+from ..gather import LANES, buffers, table
 from ..jit import kernel
 from ..neighbours import NeighbourList
 from ..threads import run, share
@@ -37,7 +37,7 @@ class Arrays(NamedTuple):
     push (2 d, m): the speed that a sleeper was pushed to, and its acceleration when it fell asleep.
     interface (0 | 1, m): see `across.interface_speed`. impulse, thrust (d, m): of what is driven, see `driving`;
     face_slip: friction on facets, see `facing`. relaxed (0 | 1, m): energy that dynamic relaxation took.
-    packed, beside (m, 8): see `packed`.
+    packed, beside (m, 8): see `packed`; near: buffers for them, see `gather`.
     """
 
     x: Any
@@ -117,6 +117,7 @@ class Arrays(NamedTuple):
     relaxed: Any
     packed: Any
     beside: Any
+    near: Any
 
 
 class Numbers(NamedTuple):
@@ -160,14 +161,23 @@ class Numbers(NamedTuple):
 
 
 @kernel
-def _permute(thread, threads, sync, numbers, spare, rows, order):
-    """numbers[k, i] = numbers[k, order[i]] for the first rows, by way of a spare row of each thread."""
-    r0, r1 = share(rows, thread, threads)
-    for k in range(r0, r1):
+def _permute(thread, threads, sync, numbers, whole, spare, rows, order):
+    """numbers[k, i] = numbers[k, order[i]] for the first rows, by way of a spare row of each thread; all of whole."""
+    r0, r1 = share(rows + len(whole), thread, threads)
+    mine = spare[thread]
+    for k in range(r0, min(r1, rows)):
+        row = numbers[k]
         for i in range(len(order)):
-            spare[thread, i] = numbers[k, order[i]]
+            mine[i] = row[order[i]]
         for i in range(len(order)):
-            numbers[k, i] = spare[thread, i]
+            row[i] = mine[i]
+    counts = mine.view(np.int64)
+    for k in range(max(r0, rows), r1):
+        row = whole[k - rows]
+        for i in range(len(order)):
+            counts[i] = row[order[i]]
+        for i in range(len(order)):
+            row[i] = counts[i]
 
 
 @dataclass(frozen=True, slots=True)
@@ -263,20 +273,20 @@ class State:
         width = (self.dummy + 1 + 7) // 8 * 8 + 8
         if width % 512 == 0:
             width += 8  # rows a multiple of 4 KiB apart would share the same cache sets
-        self.numbers: Floats = np.zeros((self._rows, width))
+        self.numbers: Floats = table(self._rows * width // LANES).reshape(self._rows, width)
         self.packed, self.beside = (table(self.dummy + 1 if packs else 0) for packs in self._packs)
-        self.id, self.material, self.fixed = (np.zeros(self.dummy + 1, np.int64) for _ in range(3))
+        self._whole = np.zeros((3, self.dummy + 1), np.int64)
+        self.id, self.material, self.fixed = self._whole
 
     def make_room(self, room: int) -> None:
         """Have room for so many images at least."""
         if self.n + room <= self.dummy:
             return
-        old = self.numbers, self.id, self.material, self.fixed
+        old = self.numbers, self._whole
         self._allocate(room + room // 4)
         n = self.n
         self.numbers[:, :n] = old[0][:, :n]
-        for now, then in zip((self.id, self.material, self.fixed), old[1:], strict=True):
-            now[:n] = then[:n]
+        self._whole[:, :n] = old[1][:, :n]
         self.place_dummy(self.far)
 
     def rows(self, name: str) -> Floats:
@@ -290,10 +300,7 @@ class State:
 
     def sort(self, order: NDArray[np.int64], threads: int) -> None:
         """Put the particles into a new order; order: old places, of all or of the first."""
-        n = len(order)
-        run(_permute, threads, self.numbers, np.empty((threads, n)), self.lasting, order)
-        for whole in (self.id, self.material, self.fixed):
-            whole[:n] = whole[:n][order]
+        run(_permute, threads, self.numbers, self._whole, np.empty((threads, len(order))), self.lasting, order)
 
     def kept(self) -> dict[str, Any]:
         """All rows and numbers of the particles, for a checkpoint."""
@@ -395,4 +402,5 @@ class State:
             relaxed=self.rows("relaxed"),
             packed=self.packed,
             beside=self.beside,
+            near=buffers(len(reduced)),
         )

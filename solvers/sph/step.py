@@ -29,7 +29,7 @@ PROGRESS = 7
 # why `advance` came back
 REACHED, PAUSED, REBUILD, BROKEN, COLLAPSED, FAILED = range(6)
 
-CHUNK = 256  # particles that a thread takes on at a time
+CHUNK = 128  # particles that a thread takes on at a time
 
 LANDING = 8  # so many steps before a wanted time the step is trimmed to meet it
 GROWTH = 1.1  # a step grows by no more than this
@@ -40,14 +40,17 @@ COLLAPSE = 1e-7  # a step this small beside the first one will not recover
 
 @kernel
 def strain(
-    i0, i1, offset, source, shape, solid, h, line, correction, density_rate, stress_rate, plain, hoop, reference, dt,
-    arrays, numbers,
+    i0, i1, offset, source, shape, near, solid, h, line, correction, density_rate, stress_rate, plain, hoop, reference,
+    dt, arrays, numbers,
 ):  # fmt: skip
-    """Velocity gradients of a range of particles, and the rates of diffusion, all with the old densities."""
+    """Velocity gradients of a range of particles, and the rates of diffusion, all with the old densities.
+
+    near: (2, .) the thread's own buffers, see `gather`.
+    """
     if plain is not None:
         pairs.velocity_gradient(
-            i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.packed, solid, h, numbers.inverse_h2,
-            numbers.scale, line, arrays.gradient, correction,
+            i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.packed, near[0], solid, h,
+            numbers.inverse_h2, numbers.scale, line, arrays.gradient, correction,
         )  # fmt: skip
     if hoop is not None:
         rings.radial_strain(i0, i1, arrays)
@@ -66,9 +69,11 @@ def strain(
 
 
 @kernel
-def force(i0, i1, shape, z, h, mass, nearest, line, cx, contact, mixed, correction, bx, artificial, heat, body_work,
-          wave, friction, damping, normals, by_normals, planes, wall_slip, contact_heat, plain, hoop, rows_apart,
-          reference, driven, faces, face_slip, dt, arrays, numbers):  # fmt: skip
+def force(
+    i0, i1, shape, near, z, h, mass, nearest, line, cx, contact, mixed, correction, bx, artificial, heat, body_work,
+    wave, friction, damping, normals, by_normals, planes, wall_slip, contact_heat, plain, hoop, rows_apart, reference,
+    driven, faces, face_slip, dt, arrays, numbers,
+):  # fmt: skip
     """Accelerations of a range of particles; returns their critical step."""
     if mixed is not None:
         weight = arrays.volume
@@ -83,8 +88,8 @@ def force(i0, i1, shape, z, h, mass, nearest, line, cx, contact, mixed, correcti
         body = rings.NO_FORCE
     if plain is not None:
         momentum(
-            i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.packed, arrays.beside, z, arrays.s, weight,
-            h, numbers.inverse_h2, scale, line, body, arrays.ax, arrays.ay, arrays.az, nearest, density,
+            i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.packed, arrays.beside, near[0], near[1], z,
+            weight, h, numbers.inverse_h2, scale, line, body, arrays.ax, arrays.ay, arrays.az, nearest, density,
             rows_apart, artificial, numbers.inverse_w, bx, arrays.by, arrays.bz,
         )  # fmt: skip
     if hoop is not None:
@@ -155,9 +160,9 @@ def advance(
     wanted anew. resting: None, or `rest.Resting`.
     """
     i0, i1 = share(n, thread, threads)
+    near = arrays.near[thread]
     chunk = n if threads == 1 else CHUNK
     chunks = (n + chunk - 1) // chunk
-    taken = 0
     time = progress[TIME]
     last = progress[LAST]
     dt = progress[NEXT]
@@ -181,22 +186,21 @@ def advance(
                     rings.flow(offset + g0, offset + g1, hoop, arrays)
                     barrier(sync, threads)
                 pack_motion(thread, threads, sync, 0, solid, h, hoop, plain, arrays)
-                c = claim(sync, taken)
+                c = claim(sync, thread, threads, chunks)
                 while c < chunks:
                     end = min(n, (c + 1) * chunk)
                     a, b = rest.run_of(c * chunk, end, resting, rest.HELD, arrays.still)
                     while a < b:
                         strain(
-                            a, b, offset, image_source, shape, solid, h, line, correction, density_rate, stress_rate,
-                            plain, hoop, reference, last, arrays, numbers,
+                            a, b, offset, image_source, shape, near, solid, h, line, correction, density_rate,
+                            stress_rate, plain, hoop, reference, last, arrays, numbers,
                         )  # fmt: skip
                         if walled is not None and driven is not None:
                             bearing.without_walls(a, b, solid, shape, correction, arrays, numbers)
                         if resting is not None:
                             rest.no_diffusion(a, b, density_rate, stress_rate, arrays)
                         a, b = rest.run_of(b, end, resting, rest.HELD, arrays.still)
-                    c = claim(sync, taken)
-                taken += chunks + threads
+                    c = claim(sync, thread, threads, chunks)
                 barrier(sync, threads)  # the strain of all particles needs the old volumes
             # at the very start without strain: what an equation of state makes of the first densities
             a, b = rest.run_of(i0, i1, resting, rest.HELD, arrays.still)
@@ -247,7 +251,7 @@ def advance(
             if resting is not None:
                 look = (int(progress[STEPS]) + done) % rest.LOOK == 0
             most = rest.DEEP if look else rest.HELD
-            c = claim(sync, taken)
+            c = claim(sync, thread, threads, chunks)
             while c < chunks:
                 end = min(n, (c + 1) * chunk)
                 at = c * chunk
@@ -257,16 +261,15 @@ def advance(
                         least = min(least, critical_step(at, a, z, wave, numbers, arrays))
                         at = b
                     part = force(
-                        a, b, shape, z, h, mass, nearest, line, cx, contact, mixed, correction, bx, artificial, heat,
-                        body_work, wave, friction, damping, normals, by_normals, planes, wall_slip, contact_heat,
+                        a, b, shape, near, z, h, mass, nearest, line, cx, contact, mixed, correction, bx, artificial,
+                        heat, body_work, wave, friction, damping, normals, by_normals, planes, wall_slip, contact_heat,
                         plain, hoop, rows_apart, reference, driven, faces, face_slip, last, arrays, numbers,
                     )  # fmt: skip
                     least = min(least, part)
                     a, b = rest.run_of(b, end, resting, most, arrays.still)
                 if resting is not None:
                     least = min(least, critical_step(at, end, z, wave, numbers, arrays))
-                c = claim(sync, taken)
-            taken += chunks + threads
+                c = claim(sync, thread, threads, chunks)
             arrays.reduced[thread, 2] = least
             barrier(sync, threads)
             dt = numbers.step_factor * arrays.reduced[:threads, 2].min()
@@ -319,13 +322,12 @@ def advance(
                 g0, g1 = share(len(image_source), thread, threads)
                 ghosts.follow_motion(g0, g1, offset, z, image_source, image_sign, image_shift, arrays)
                 barrier(sync, threads)
-            c = claim(sync, taken)
+            c = claim(sync, thread, threads, chunks)
             while c < chunks:
                 cures.smoothed_velocity(
                     c * chunk, min(n, (c + 1) * chunk), z, shape, smoothing, arrays, numbers, smoothed
                 )
-                c = claim(sync, taken)
-            taken += chunks + threads
+                c = claim(sync, thread, threads, chunks)
             barrier(sync, threads)
         moved = 0.0
         bad = -1.0

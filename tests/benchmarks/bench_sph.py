@@ -23,6 +23,7 @@ from zrno.solvers.jit import compile_seconds  # noqa: E402
 from zrno.solvers.materials import Elastic  # noqa: E402
 from zrno.solvers.neighbours import Cells  # noqa: E402
 from zrno.solvers.sph import Body, Problem, Solver, momentum, packed, pairs, particle  # noqa: E402
+from zrno.solvers.threads import meeting  # noqa: E402
 
 STEPS = 100
 
@@ -73,19 +74,19 @@ def phases(problem: Problem, builds: float) -> dict[str, float]:
     s.advance(1e9, 60)
     a, k, n = s._arrays(), s._numbers, s.n
     law = s._laws[0]
-    sync = np.zeros(3, np.int64)
+    sync = meeting(1)
     radius = s._shape.support * float(problem.h.max())
     assert a.x_list is not None
     cells = Cells(n, a.x_list, a.y_list, a.z_list, radius + s._skin)
     return {
         "velocity gradient": nanoseconds(
             lambda: pairs.velocity_gradient(
-                0, n, a.first, a.count, a.rows, s._shape, a.packed, True, None, k.inverse_h2, k.scale, None, a.gradient,
-                None,
+                0, n, a.first, a.count, a.rows, s._shape, a.packed, a.near[0, 0], True, None, k.inverse_h2,
+                k.scale, None, a.gradient, None,
             ), n),
         "momentum": nanoseconds(
             lambda: momentum.momentum(
-                0, n, a.first, a.count, a.rows, s._shape, a.packed, a.beside, a.z, a.s, None, None, k.inverse_h2,
+                0, n, a.first, a.count, a.rows, s._shape, a.packed, a.beside, *a.near[0], a.z, None, None, k.inverse_h2,
                 k.force_scale, None, k.body, a.ax, a.ay, a.az, a.nearest, None, None, None, 1.0, None, None, None,
             ), n),
         "packing": nanoseconds(lambda: packed.pack_motion(0, 1, sync, 0, True, None, None, True, a), n)

@@ -94,3 +94,22 @@ def test_a_list_is_built_again_after_it_outgrew_its_room() -> None:
     assert pairs.count.sum() > 10 * few
     near = np.linalg.norm(x[:2, :n] - x[:2, :1], axis=0) < 0.3
     assert len(found(pairs, 0)) == near.sum() - 1
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_a_list_that_has_become_too_long_is_that_of_a_first_build(threads: int) -> None:
+    n, radius = 3000, 0.08
+    cells, x = sort(cloud(n, 3), 3, radius)
+    pairs = NeighbourList(n)
+    pairs.build(cells, x[0], x[1], x[2], radius=radius, skin=0.0, threads=threads)
+    room = len(pairs.rows)
+    x[:, :n] -= 0.5
+    x[:, : n // 4] *= 0.8  # some blocks need more than their room, the others stand as they are
+    cells, x = sort(x, 3, radius)
+    pairs.build(cells, x[0], x[1], x[2], radius=radius, skin=0.0, threads=threads)
+    assert len(pairs.rows) > room
+    fresh = NeighbourList(n)
+    fresh.build(cells, x[0], x[1], x[2], radius=radius, skin=0.0)
+    for i in range(n):
+        row = pairs.rows[pairs.first[i] : pairs.first[i] + pairs.count[i]]
+        assert np.array_equal(row, fresh.rows[fresh.first[i] : fresh.first[i] + fresh.count[i]])

@@ -14,8 +14,9 @@ from zrno.solvers.materials import Elastic
 from zrno.solvers.sph import Cures, Plane, Problem, Solver, bearing, packed, pairs, particle
 from zrno.solvers.sph.ghosts import SYMMETRY
 from zrno.solvers.sph.step import INSTANT
+from zrno.solvers.threads import meeting
 
-NOBODY = np.zeros(3, np.int64)  # to wait for
+NOBODY = meeting(1)  # to wait for
 
 
 def gradients(problem: Problem, slope: np.ndarray) -> np.ndarray:
@@ -27,7 +28,7 @@ def gradients(problem: Problem, slope: np.ndarray) -> np.ndarray:
     solid = True if d == 3 else None
     packed.pack_motion(0, 1, NOBODY, 0, solid, None, None, True, a)
     pairs.velocity_gradient(
-        0, n, a.first, a.count, a.rows, solver._shape, a.packed, solid, None,
+        0, n, a.first, a.count, a.rows, solver._shape, a.packed, a.near[0, 0], solid, None,
         numbers.inverse_h2, numbers.scale, None, a.gradient, a.correction if problem.cures.correction else None,
     )  # fmt: skip
     return np.array(a.gradient[:, :n].T.reshape(n, d, d))
@@ -56,7 +57,7 @@ def test_the_correction_of_a_particle_that_sees_two_others_from_afar_is_bounded(
     a = solver._arrays()
     packed.pack_motion(0, 1, NOBODY, 0, None, None, None, True, a)
     pairs.velocity_gradient(
-        0, 3, a.first, a.count, a.rows, solver._shape, a.packed, None, None,
+        0, 3, a.first, a.count, a.rows, solver._shape, a.packed, a.near[0, 0], None, None,
         solver._numbers.inverse_h2, solver._numbers.scale, None, a.gradient, a.correction,
     )  # fmt: skip
     assert np.abs(a.correction[:, :3]).max() < 1.0 / pairs.SEEN
@@ -77,7 +78,7 @@ def turned(problem: Problem, turns: int, steps: int, start: tuple[float, ...]) -
         s.rows("u")[:, :n] = new - old
         packed.pack_motion(0, 1, NOBODY, 0, None, None, None, True, a)
         pairs.velocity_gradient(
-            0, n, a.first, a.count, a.rows, solver._shape, a.packed, None, None, numbers.inverse_h2,
+            0, n, a.first, a.count, a.rows, solver._shape, a.packed, a.near[0, 0], None, None, numbers.inverse_h2,
             numbers.scale, None, a.gradient, correction,
         )  # fmt: skip
         particle.constitutive(
@@ -293,7 +294,7 @@ def test_a_wall_that_moves_is_strained_by_what_leans_on_it_alone(shape: tuple[in
     def gradient(correction: np.ndarray | None) -> np.ndarray:
         packed.pack_motion(0, 1, NOBODY, 0, solid, None, None, True, a)
         pairs.velocity_gradient(
-            0, n, a.first, a.count, a.rows, solver._shape, a.packed, solid, None,
+            0, n, a.first, a.count, a.rows, solver._shape, a.packed, a.near[0, 0], solid, None,
             solver._numbers.inverse_h2, solver._numbers.scale, None, a.gradient, correction,
         )  # fmt: skip
         return np.array(a.gradient[:, :n].T.reshape(n, d, d))
