@@ -122,8 +122,10 @@ class Stage:
         if k > 1:
             width, height = self._size
             parts = image.reshape(height, k, width, k, 3)
-            total = sum(parts[:, i, :, j].astype(np.uint16) for i in range(k) for j in range(k))
-            image = ((total + k * k // 2) // (k * k)).astype(np.uint8)
+            total = np.full(parts[:, 0, :, 0].shape, k * k // 2, np.uint16)
+            for i, j in np.ndindex(k, k):
+                total += parts[:, i, :, j]
+            image = (total // (k * k)).astype(np.uint8)
         return self._annotated(image, caption)
 
     def _show_cloud(self, cloud: Cloud) -> None:
@@ -184,7 +186,7 @@ class Stage:
         dpi = 100.0
         width, height = self._size
         figure = Figure(figsize=(width / dpi, height / dpi), dpi=dpi, facecolor="none")
-        canvas = FigureCanvasAgg(figure)
+        canvas: Any = FigureCanvasAgg(figure)
         draw(figure)
         canvas.draw()
         return canvas
