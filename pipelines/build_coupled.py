@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import dataclasses
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -62,7 +63,10 @@ def coupled_problem(
     offset = int(grain.particles.material.max())
     if how.contact == "face" and not original:
         particles = _facing(grain, paths[0], surface, how, of_particles or Sph(), places)
-        return particles, structure, _exchange(how, structure, surface.nodes, offset, area=surface.area)
+        exchange = _exchange(how, structure, surface.nodes, offset)
+        spacing = float(np.median(particles.sections ** (1.0 / particles.dimension)))
+        reach = 0.5 * spacing if particles.dimension == 2 else spacing / math.sqrt(math.pi)
+        return particles, structure, dataclasses.replace(exchange, area=surface.area, reach=reach)
     chosen = _method(of_particles or Sph(), how)
     law = contact.law_of_contact(control, chosen)
     whole = _with_nodes(grain, steel, nodes, offset + 1)
@@ -97,9 +101,7 @@ def _all_given(structure: fem.Problem) -> bool:
 SLOWLY = 0.2  # the share of the grain's force that a structure without inertia gets in a period
 
 
-def _exchange(
-    how: Coupling, structure: fem.Problem, nodes: Any, offset: int, *, original: bool = False, area: Any = None
-) -> Exchange:
+def _exchange(how: Coupling, structure: fem.Problem, nodes: Any, offset: int, *, original: bool = False) -> Exchange:
     return Exchange(
         nodes=nodes,
         tolerance=how.tolerance or 0.0,
@@ -107,7 +109,6 @@ def _exchange(
         relaxation=how.relaxation or (SLOWLY if structure.dynamics is None else 1.0),
         original=original,
         offset=offset,
-        area=area,
     )
 
 

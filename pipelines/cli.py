@@ -240,6 +240,7 @@ def render(
     of: Annotated[
         str | None, typer.Option(metavar="particles|elements", help="What has the colours; else all with the field.")
     ] = None,
+    most: Annotated[float | None, typer.Option(metavar="VALUE", help="Where the colours end.")] = None,
     json: Json = False,
     verbose: Verbose = False,
     quiet: Quiet = False,
@@ -249,7 +250,7 @@ def render(
     with console.command(typer.Exit, json=json, verbose=verbose, quiet=quiet) as out:
         from zrno.pipelines.render import render as run_render
 
-        files = run_render(directory, output=output, field=field, time=time, view=view, size=pixels, of=of)
+        files = run_render(directory, output=output, field=field, time=time, view=view, size=pixels, of=of, most=most)
         out.answer({"files": [str(f) for f in files]}, "\n".join(map(str, files)))
 
 

@@ -33,6 +33,7 @@ def render(
     view: str = "iso",
     size: tuple[int, int] = (1280, 720),
     of: str | None = None,
+    most: float | None = None,
 ) -> list[Path]:
     """Draw the particles and elements of a result folder, coloured by a field; returns the files written.
 
@@ -42,8 +43,8 @@ def render(
     one (`velocity_x`), or the magnitude of a vector. time: "last", "all", or a simulated time, of which the nearest
     frame is drawn. view: iso (a flat scene is looked at straight), x, y, z, -x, -y, -z, or a direction from the scene
     towards the camera ("1,-2,0.5"). size: width and height in pixels. of: particles or elements,
-    where the other's values of the same field shall not stretch the scale; the other is grey. Camera and colours are
-    the same for all frames.
+    where the other's values of the same field shall not stretch the scale; the other is grey. most: where the colours
+    end, for a field with a few peaks. Camera and colours are the same for all frames.
 
     Raises InputError or ValueError for what is not there, Missing where EGL or ffmpeg is not installed.
     """
@@ -66,7 +67,7 @@ def render(
     egl.require()
     target.parent.mkdir(parents=True, exist_ok=True)
     frames = range(len(result.times)) if film else chosen
-    pictures = _pictures(result, frames, field, view, size, of)
+    pictures = _pictures(result, frames, field, view, size, of, most)
     if film:
         movie.write(target, pictures, rate=_RATE)
         return [target]
@@ -147,7 +148,13 @@ def _shown(result: Result, index: int, field: str, of: str | None) -> _Shown:
 
 
 def _pictures(
-    result: Result, frames: Sequence[int], field: str, view: str, size: tuple[int, int], of: str | None
+    result: Result,
+    frames: Sequence[int],
+    field: str,
+    view: str,
+    size: tuple[int, int],
+    of: str | None,
+    end: float | None,
 ) -> Iterator[NDArray[np.uint8]]:
     """Each frame's picture; the first pass over the frames finds the camera and the colours that fit all."""
     first = _shown(result, frames[0], field, of)
@@ -165,7 +172,7 @@ def _pictures(
         count = max(count, len(shown.points))
     label = quantity(field, result.units, 3 if result.axisymmetric else result.dimension)
     when = quantity("time", result.units).unit
-    scale = scale_for(least, most, str(label))
+    scale = scale_for(least, most if end is None or end <= least else end, str(label))
     stage = Stage(size, along, box, scale, title=result.title, flat=is_flat(spread), fine=count * len(frames) <= FINE)
     try:
         for i in frames:

@@ -67,10 +67,11 @@ class Output(Section):
 
 
 class Picture(Section):
-    """A picture to draw after the run. of: what has the colours, else all that has the field."""
+    """A picture to draw after the run. of: what has the colours, else all that has the field; most: where they end."""
 
     field: str = "von_mises"
     of: Literal["particles", "elements"] | None = None
+    most: float | None = None
     time: float | str = "last"
     view: str = "iso"
     size: tuple[Pixels, Pixels] = (1280, 720)

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from .. import fem, sph
 from ..frame import Cells, Frame
+from .pressure import pressure
 
 Floats = NDArray[np.float64]
 log = logging.getLogger("zrno")
@@ -39,7 +40,7 @@ class Exchange:
     received that the next period gets, the rest comes later (weak coupling with a structure without inertia, which
     otherwise jumps from under the grain); original: hand back what the original programs do, accelerations at the end
     of the period, to other nodes, none with kernel contact. offset: added to the numbers of the structure's materials,
-    which follow the particles'. area: (m,) of each node, for frames.
+    which follow the particles'. area: (m,) of each node, reach: of the disc that a particle bears on, for frames.
     """
 
     nodes: NDArray[np.int64]
@@ -49,6 +50,7 @@ class Exchange:
     original: bool = False
     offset: int = 0
     area: Floats | None = None
+    reach: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -249,20 +251,21 @@ class Coupled:
     def frame(self) -> Frame:
         """Particles, nodes and elements; the structure's materials are numbered after the particles'.
 
-        Nodes have the force of the grain in the last period, and it by their area: friction is in both.
+        Nodes have the force of the grain in the last period, and its pressure, see `pressure`: friction is in both.
         """
         grain, steel = self.particles.frame(), self.structure.frame()
         cells = [
             Cells(c.kind, c.nodes, {**c.data, "material": c.data["material"] + self.exchange.offset})
             for c in steel.cells
         ]
-        force = np.zeros((len(steel.nodes["position"]), 3))
-        force[self.exchange.nodes] = self.force
+        place, at = steel.nodes["position"], self.exchange.nodes
+        force = np.zeros((len(place), 3))
+        force[at] = self.force
         nodes = steel.nodes | {"contact_force": force}
         if self.exchange.area is not None:
-            area = np.full(len(force), np.inf)
-            area[self.exchange.nodes] = np.maximum(self.exchange.area, np.finfo(float).tiny)
-            nodes["contact_pressure"] = np.linalg.norm(force, axis=1) / area
+            nodes["contact_pressure"] = np.zeros(len(force))
+            found = pressure(place[at], self.force, self.exchange.area, self.exchange.reach)
+            nodes["contact_pressure"][at] = found
         return Frame(steel.time, steel.step, grain.particles, nodes, cells)
 
     def _interface_energy(self) -> float:

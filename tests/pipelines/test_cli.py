@@ -182,7 +182,7 @@ def test_wrong_usage_is_exit_code_2(capsys: pytest.CaptureFixture[str], stand_in
 def test_render_and_plot_hand_their_options_on(capsys: pytest.CaptureFixture[str], stand_in: Any) -> None:
     drawn = stand_in("render", [Path("p.png")])
     words = ["--field", "pressure", "--time", "all", "--view", "x", "--size", "640x480", "-o", "p.png"]
-    words += ["--of", "particles"]
+    words += ["--of", "particles", "--most", "3"]
     assert _call(capsys, "render", "out", *words) == (0, "p.png\n", "")
     assert drawn.args == (Path("out"),)
     assert drawn.kwargs == {
@@ -190,6 +190,7 @@ def test_render_and_plot_hand_their_options_on(capsys: pytest.CaptureFixture[str
         "field": "pressure",
         "time": "all",
         "view": "x",
+        "most": 3.0,
         "size": (640, 480),
         "of": "particles",
     }

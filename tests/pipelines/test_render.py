@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import stat
 import sys
@@ -238,3 +239,13 @@ def test_colours_of_one_alone(folder: Path) -> None:
     assert files == [folder / "von_mises_particles.png"]
     with pytest.raises(ValueError, match="no elements to colour; there are: particles"):
         render(folder, of="elements", size=SIZE)
+
+
+def test_colours_end_where_they_are_told_to(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    module = importlib.import_module("zrno.pipelines.render")
+    ends: list[float] = []
+    monkeypatch.setattr(module, "scale_for", lambda low, high, label: ends.append(high) or scale_for(low, high, label))
+    for most in (None, 0.1, -9.0):  # below the least value it says nothing
+        render(folder, field="velocity_x", size=SIZE, most=most)
+    assert ends[1] == 0.1
+    assert ends[0] == ends[2] > 0.1

@@ -310,9 +310,9 @@ def test_a_scenes_pictures_are_drawn_as_it_says(tmp_path: Path, monkeypatch: pyt
 
     asked: list[dict[str, Any]] = []
     monkeypatch.setattr("zrno.pipelines.render.render", lambda folder, **options: asked.append(options) or [])
-    text = GOOD.replace("{time: 0.5}", "{field: pressure, time: 0.5, view: x, size: [640, 480]}")
+    text = GOOD.replace("{time: 0.5}", "{field: pressure, time: 0.5, view: x, size: [640, 480], most: 3}")
     _pictures(scene.load(_scene(tmp_path, text)), tmp_path, [])
-    assert asked[1] == {"field": "pressure", "of": None, "time": 0.5, "view": "x", "size": (640, 480)}
+    assert asked[1] == {"field": "pressure", "of": None, "most": 3.0, "time": 0.5, "view": "x", "size": (640, 480)}
 
 
 def _deck() -> Model:
