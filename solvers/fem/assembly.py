@@ -13,6 +13,7 @@ from .groups import make_groups
 from .groups.group import Sink
 from .groups.timed import TimedGroup
 from .heat import Heat, has_heat
+from .libraries import Singular
 from .problem import SMALL, Problem
 from .shape import Shape
 from .stops import Stops
@@ -186,7 +187,7 @@ class Assembly:
         kind = "general" if not self.structure.symmetric else "definite" if definite else "symmetric"
         try:
             self.system.factor(kind)
-        except linear.Singular as error:
+        except Singular as error:
             raise self.mechanism(error) from error
 
     def _reduce(self, values: Floats) -> None:
@@ -205,10 +206,10 @@ class Assembly:
         """Unknowns of a right side; raises Mechanism."""
         try:
             return self.system.solve(right)
-        except linear.Singular as error:
+        except Singular as error:
             raise self.mechanism(error) from error
 
-    def mechanism(self, error: linear.Singular) -> Mechanism:
+    def mechanism(self, error: Singular) -> Mechanism:
         """What a singular matrix means: where and along what the structure can move."""
         place, cause = error.equation, "the structure can move without resistance"
         if place < 0:
