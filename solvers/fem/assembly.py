@@ -175,8 +175,10 @@ class Assembly:
         self._full_values = np.zeros(len(self.structure.columns))
         return self._full_values
 
-    def factor(self, *, extra: Floats | None = None, scale: float = 1.0, definite: bool = True) -> None:
-        """Factor scale x matrix + extra (values of the same structure). Raises Mechanism."""
+    def factor(
+        self, *, extra: Floats | None = None, scale: float = 1.0, definite: bool = True, answers: int = 1
+    ) -> None:
+        """Factor scale x matrix + extra (values of the same structure), for so many right sides. Raises Mechanism."""
         values = self.system.values if self.transform is None else self._full_values
         if scale != 1.0:
             values *= scale
@@ -186,7 +188,7 @@ class Assembly:
             self._reduce(values)
         kind = "general" if not self.structure.symmetric else "definite" if definite else "symmetric"
         try:
-            self.system.factor(kind)
+            self.system.factor(kind, answers=answers)
         except Singular as error:
             raise self.mechanism(error) from error
 
