@@ -59,6 +59,11 @@ def refusals(model: Model, path: str, method: Fem) -> list[Fault]:
         if block.family == "shell" and block.kind not in _SHELLS:
             message = f"shells of the kind {block.kind} are not computed yet"
             faults.append(Fault(path, 1, 1, message, "", "three, four, eight or nine nodes"))
+    for load in model.face_loads:
+        if load.native.get("IPRAV") == -1:
+            at = load.source.line if load.source else 1
+            faults.append(Fault(path, at, 1, "shear along edges is not computed: its sign is not known", "IPRAV -1",
+                                "pressure, or forces on nodes"))  # fmt: skip
     faults += _of_heat(model, path)
     if control.restart == 1:
         faults.append(Fault(path, 1, 1, "a restart of PAK's own files is not read", "IREST 1", "--resume"))

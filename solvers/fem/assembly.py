@@ -13,6 +13,7 @@ from .groups import make_groups
 from .groups.group import Sink
 from .groups.timed import TimedGroup
 from .heat import Heat, has_heat
+from .libraries import Singular
 from .problem import SMALL, Problem
 from .shape import Shape
 from .stops import Stops
@@ -174,8 +175,10 @@ class Assembly:
         self._full_values = np.zeros(len(self.structure.columns))
         return self._full_values
 
-    def factor(self, *, extra: Floats | None = None, scale: float = 1.0, definite: bool = True) -> None:
-        """Factor scale x matrix + extra (values of the same structure). Raises Mechanism."""
+    def factor(
+        self, *, extra: Floats | None = None, scale: float = 1.0, definite: bool = True, answers: int = 1
+    ) -> None:
+        """Factor scale x matrix + extra (values of the same structure), for so many right sides. Raises Mechanism."""
         values = self.system.values if self.transform is None else self._full_values
         if scale != 1.0:
             values *= scale
@@ -185,8 +188,8 @@ class Assembly:
             self._reduce(values)
         kind = "general" if not self.structure.symmetric else "definite" if definite else "symmetric"
         try:
-            self.system.factor(kind)
-        except linear.Singular as error:
+            self.system.factor(kind, answers=answers)
+        except Singular as error:
             raise self.mechanism(error) from error
 
     def _reduce(self, values: Floats) -> None:
@@ -205,10 +208,10 @@ class Assembly:
         """Unknowns of a right side; raises Mechanism."""
         try:
             return self.system.solve(right)
-        except linear.Singular as error:
+        except Singular as error:
             raise self.mechanism(error) from error
 
-    def mechanism(self, error: linear.Singular) -> Mechanism:
+    def mechanism(self, error: Singular) -> Mechanism:
         """What a singular matrix means: where and along what the structure can move."""
         place, cause = error.equation, "the structure can move without resistance"
         if place < 0:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from . import linear
 from .assembly import Assembly
 from .equilibrium import Target
+from .libraries import Singular
 from .problem import Dynamics
 from .shape import Shape
 
@@ -92,7 +93,7 @@ class Integrator:
                     system.factor()
                     self._mass_system = system
                 found[a.where] = self._mass_system.solve(forces.ravel()[a.where])
-            except linear.Singular:
+            except Singular:
                 pass
         return found.reshape(a.n, 6)
 

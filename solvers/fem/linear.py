@@ -76,13 +76,16 @@ class System:
             product_of_triangle(self.starts, self.columns, self.values, np.ascontiguousarray(column), its)
         return out.T
 
-    def factor(self, kind: str | None = None) -> None:
-        """Factor the values that now stand; raises Singular. kind: as what, where that changes."""
+    def factor(self, kind: str | None = None, *, answers: int = 1) -> None:
+        """Factor the values that now stand; raises Singular. kind: as what, where that changes; answers: right sides
+        that are known to come."""
         self.factored = False  # until it has worked: a step that is halved begins with these factors
         if not np.isfinite(self.values.sum()):  # PARDISO's memory does not survive it
             raise Singular(-1, "the matrix is not finite")
         if kind is not None and kind != self.kind:
             self.kind, self._factors = kind, None
+        if answers > PATIENCE and self._single:
+            self._single, self._factors = False, None
         if self._single and self.kind == "definite":
             try:
                 self._make(Mixed)

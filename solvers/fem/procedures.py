@@ -131,9 +131,9 @@ class Superposition(Still):
         motions: dict[int | None, Floats] = {}
         for m in solver.problem.motions:
             motions.setdefault(m.curve, np.zeros((solver.n, 6)))[m.nodes, m.dofs] = m.values
-        a.evaluate(zero, zero, 0.0)
-        a.factor()
         cases = solver.loads.patterns()
+        a.evaluate(zero, zero, 0.0)
+        a.factor(answers=len(cases) + len(motions))
         answers = []
         if cases:
             right = np.column_stack([a.gather(forces) for _, _, forces in cases])

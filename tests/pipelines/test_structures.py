@@ -16,6 +16,7 @@ from zrno.pipelines.cli import app
 from zrno.solvers.materials import cam_clay
 from zrno.solvers.materials.point import drive
 from zrno.translators import read
+from zrno.translators.model import FaceLoad
 from zrno.translators.text import InputError
 
 MESH = """$MeshFormat
@@ -169,6 +170,26 @@ sets:
     (folder / "strip.yaml").write_text(cold)
     result = run([scene], output=tmp_path / "cold", options={"render": []})
     assert any("temperatures do nothing" in warning for warning in result["warnings"])
+
+
+def test_a_traction_on_an_edge_in_the_plane(scene: Path, tmp_path: Path) -> None:
+    """Force by area 10 along x and 0.1 along y: u = sigma x/E in the middle, and the support's forces."""
+    (scene.parent / "strip.yaml").write_text("""
+dimension: 2
+materials: {strip: {law: elastic, E: 1000, nu: 0.0, density: 1}}
+sets:
+  clamped: {fixed: all}
+  tip: {traction: [10, 0.1, 0]}
+""")
+    run([scene], output=tmp_path / "out", options={"render": []})
+    frame = load(tmp_path / "out").arrays()
+    np.testing.assert_allclose(frame["reaction"].sum(axis=0), (-10.0, -0.1, 0.0), atol=1e-6)
+    tip = np.abs(frame["position"][:, 0] - 2.0) < 0.1
+    assert frame["displacement"][tip, 0].mean() == pytest.approx(0.02, rel=1e-4)
+    model = read(scene.parent / "strip.dat")
+    model.face_loads = [FaceLoad(np.array([[2, 5]]), np.array([[1.0]]), native={"IPRAV": -1})]
+    with pytest.raises(InputError, match="shear along edges"):
+        structure_problem(model, "strip.dat")
 
 
 def test_explicit_steps_refuse_damping_by_the_stiffness(scene: Path, tmp_path: Path) -> None:

@@ -51,6 +51,10 @@ def test_thick_cylinder(tmp_path: Path) -> None:
     assert at_120 == pytest.approx(0.07040330516559817, rel=0.006)
 
 
+def test_le11(tmp_path: Path) -> None:
+    assert _moved("le11", tmp_path, "scene.yaml", (1.0, 0.0, 0.0), "stress_zz") == pytest.approx(-105e6, rel=0.01)
+
+
 def test_plate(tmp_path: Path) -> None:
     clamped = _moved("plate", tmp_path / "clamped", "scene.yaml", (0.0, 0.0, 0.0), "displacement_z")
     assert clamped == pytest.approx(-0.6579664, rel=1e-3)

@@ -14,6 +14,7 @@ from zrno.translators.lost import report_lost
 from zrno.translators.model import BodyLoad, Curve, FaceLoad, Ints, Model, NodalLoad, Section
 from zrno.translators.pak import cards as layouts
 from zrno.translators.pak.control import end_time
+from zrno.translators.pak.edges import nodal_forces
 from zrno.translators.pak.write_elements import heading, real_column
 from zrno.translators.pak.write_nodes import WIDEST_SHORT
 from zrno.translators.text import Layout
@@ -115,12 +116,26 @@ class LoadWriter:
                 continue
             edge = "ITIPE" in load.native or load.faces.shape[1] == 2 or planes
             if edge and load.direction:
-                self.report.drop("tractions on edges", len(load.faces), "PAK has pressure and shear there")
+                self._traction(load)
             elif edge and (self.ids[load.faces[load.faces >= 0]] > WIDEST_SHORT).any():
                 self.report.drop("loads on edges", len(load.faces), "PAK reads their nodes' numbers in five columns")
             else:
                 (lines if edge else faces).append(load)
         return lines, faces
+
+    def _traction(self, load: FaceLoad) -> None:
+        """A traction on edges of plane elements among the forces on nodes."""
+        if load.direction == 3:
+            self.report.drop("tractions on edges", len(load.faces), "along z")
+            return
+        plane = self._plane()
+        round_ = plane.plane == "axisymmetric"
+        thickness = plane.parameters.get("thickness", 1.0)
+        forces, lost = nodal_forces(self.model.xyz, load, thickness, axisymmetric=round_)
+        self.report.approximate("tractions on edges", len(load.faces), "as forces on their nodes")
+        self.report.drop("forces of tractions", lost, "on nodes of the axis")
+        if len(forces.nodes):
+            self.nodal["force"].append(forces)
 
     def _body_loads(self) -> list[BodyLoad]:
         kept: list[BodyLoad] = []

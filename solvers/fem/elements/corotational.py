@@ -79,12 +79,12 @@ def deformation(x: Floats, turn: Floats, axes: Floats, start: Floats) -> tuple[F
     rows[:, 6, 0], rows[:, 6, 6] = -1.0, 1.0
     own = np.einsum("eij,enjk,elk->enil", frame, turn, axes)
     for n in (0, 1):
-        at = slice(6 * n + 3, 6 * n + 6)
+        turns = slice(6 * n + 3, 6 * n + 6)
         vector = rotation_vector(own[:, n])
-        local[:, at] = vector
+        local[:, turns] = vector
         spin = -rigid
-        spin[:, :, at] += np.eye(3)
-        rows[:, at] = _of_spin(vector) @ spin
+        spin[:, :, turns] += np.eye(3)
+        rows[:, turns] = _of_spin(vector) @ spin
     big = np.zeros((e, 12, 12))
     for k in range(4):
         big[:, 3 * k : 3 * k + 3, 3 * k : 3 * k + 3] = frame

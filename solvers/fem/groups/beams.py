@@ -114,7 +114,8 @@ class BeamGroup:
 
     def _moved(self, shape: Shape) -> Floats:
         """(e, 12) displacements and rotations of the ends in local axes."""
-        return np.einsum("epi,ei->ep", self._big, shape.u[self.nodes].reshape(-1, 12))
+        out: Floats = np.einsum("epi,ei->ep", self._big, shape.u[self.nodes].reshape(-1, 12))
+        return out
 
     def commit(self) -> None:
         self.forces[:] = self._trial

@@ -9,6 +9,7 @@ import pytest
 import scipy.sparse as sp
 
 from zrno.solvers.fem import linear
+from zrno.solvers.fem.libraries import Singular
 from zrno.solvers.threads import available
 
 pytestmark = pytest.mark.skipif("pardiso" not in linear.installed(), reason="PARDISO is not installed")
@@ -26,10 +27,10 @@ def _springs(size: int, stiff: float = 1.0, support: float = 1.0) -> sp.csr_matr
     return upper
 
 
-def _system(upper: sp.csr_matrix, *, single: bool = True) -> linear.System:
+def _system(upper: sp.csr_matrix, *, single: bool = True, answers: int = 1) -> linear.System:
     system = linear.System(upper.indptr, upper.indices, method="pardiso", single=single)
     system.values[:] = upper.data
-    system.factor()
+    system.factor(answers=answers)
     return system
 
 
@@ -69,6 +70,9 @@ def test_many_right_sides_get_factors_of_all_digits() -> None:
     system.solve(right)
     system.solve(right)
     assert system.factorisations == 2
+    known = _system(_springs(6), answers=5)
+    known.solve(np.ones((216, 5)))
+    assert known.factorisations == 1
 
 
 @pytest.mark.parametrize("size", [40, 400])
@@ -87,7 +91,7 @@ def test_what_single_precision_does_not_carry_is_solved_in_double(size: int, cap
 
 def test_a_singular_matrix_is_told() -> None:
     """A cube without feet, pushed."""
-    with pytest.raises(linear.Singular):
+    with pytest.raises(Singular):
         _system(_springs(6, support=0.0)).solve(np.ones(216))
 
 

@@ -297,6 +297,33 @@ def test_a_triangle_s_pressure_repeats_its_third_node(tmp_path: Path, mesh: Mesh
     assert "\n    1    2    3    3\n" in (tmp_path / "a.dat").read_text().replace(" " * 25 + "\n", "\n")
 
 
+def test_tractions_on_edges_are_forces_on_their_nodes(tmp_path: Path, mesh: Mesh) -> None:
+    """A curved edge of three nodes and a straight one whose traction grows; nothing on the axis, nothing along z."""
+    m = mesh("quad4", "quad8", family="plane")
+    m.dimension = 2
+    m.sections[1].plane = "stress"
+    m.xyz[8] += (0.0, -0.1, 0.0)
+    m.face_loads = [FaceLoad(np.array([[4, 5, 8]]), np.array([[3.0]]), 2),
+                    FaceLoad(np.array([[0, 1]]), np.array([[1.0, 2.0]]), 2),
+                    FaceLoad(np.array([[0, 1]]), np.array([[1.0]]), 3)]  # fmt: skip
+    again, notes = there_and_back(m, tmp_path)
+    assert notes.count("tractions on edges") == 3  # two by forces, one dropped
+    chord = np.linalg.norm(m.xyz[5] - m.xyz[4])
+    bow = 4 * 0.1 / chord  # the edge is a parabola: its slope at its ends
+    arc = chord * (0.5 * np.hypot(1.0, bow) + np.arcsinh(bow) / (2 * bow))
+    by_node = {n: v for f in again.nodal_loads for n, v in zip(f.nodes.tolist(), f.values.tolist(), strict=True)}
+    assert sum(by_node[k] for k in (4, 5, 8)) == pytest.approx(0.5 * 3.0 * arc, rel=1e-4)
+    assert by_node[8] > 3.0 * by_node[4] == pytest.approx(3.0 * by_node[5])
+    straight = 0.5 * np.linalg.norm(m.xyz[1] - m.xyz[0]) / 6
+    assert [by_node[0], by_node[1]] == pytest.approx([4 * straight, 5 * straight])
+    m.sections[1].plane = "axisymmetric"
+    m.xyz[:, 0] -= m.xyz[0, 0]
+    m.face_loads = m.face_loads[1:2]
+    again, notes = there_and_back(m, tmp_path)
+    assert "forces of tractions" in notes
+    assert again.nodal_loads[0].nodes.tolist() == [1]
+
+
 def test_loads_on_edges_of_planes(tmp_path: Path, mesh: Mesh, strict: ModuleType) -> None:
     m = mesh("quad4", "quad8", family="plane")
     m.dimension = 2
@@ -305,8 +332,12 @@ def test_loads_on_edges_of_planes(tmp_path: Path, mesh: Mesh, strict: ModuleType
                     FaceLoad(np.array([[4, 5, 8]]), np.array([[3.0]]), native={"IPRAV": -1, "ITIPE": 1}),
                     FaceLoad(np.array([[0, 1]]), np.array([[1.0]]), 1)]  # fmt: skip
     again, notes = there_and_back(m, tmp_path)
-    assert notes == ["tractions on edges"]
+    assert set(notes) == {"tractions on edges", "forces of nodes"}  # the forces' last digits
     assert strict.read(tmp_path / "a.dat").loads["NPP2"] == 3
+    (r0, r1), length = m.xyz[:2, 0], np.linalg.norm(m.xyz[1] - m.xyz[0])
+    force = again.nodal_loads[0]
+    assert (force.nodes.tolist(), force.dofs.tolist()) == ([0, 1], [1, 1])
+    assert force.values == pytest.approx([length * (2 * r0 + r1) / (6 * r0), length * (r0 + 2 * r1) / (6 * r1)])
     assert [load.faces.tolist() for load in again.face_loads] == [[[0, 1], [4, 5]], [[4, 5, 8]]]
     assert again.face_loads[0].native == {"ITIPE": 1, "THICV": 0.5}
 
