@@ -121,6 +121,39 @@ def report(start: dict[str, float], now: dict[str, float]) -> dict[str, float]:
     }
 
 
+def row(
+    p: Problem,
+    s: State,
+    velocity: Floats,
+    energies: dict[str, float],
+    force: Floats,
+    live: int,
+    clock: dict[str, float],
+) -> dict[str, float]:
+    """A row of the history. velocity: (d, n); force: of `contact_force`; clock: time, dt and step."""
+    n = live
+    stored = {name: energies[name] for name in STORED}
+    fixed = {name: value for name, value in energies.items() if name not in STORED and name != "absent"}
+    momentum = np.zeros(3)
+    moving = s.fixed[:n] & DRIVEN == 0
+    momentum[: s.d] = (velocity[:, :n] * s.rows("mass")[0, :n])[:, moving].sum(axis=1)
+    if p.axisymmetric:
+        momentum[0] = 0.0  # of a ring
+    plastic = s.rows("state")[PLASTIC_STRAIN, :n] if len(s.rows("state")) else np.zeros(1)
+    return {
+        "time": clock["time"],
+        "dt": clock["dt"],
+        **fixed,
+        **dict(zip(("momentum_x", "momentum_y", "momentum_z"), momentum.tolist(), strict=True)),
+        **dict(zip(("contact_force_x", "contact_force_y", "contact_force_z"), force.tolist(), strict=True)),
+        "active": float(np.count_nonzero(moving)),
+        **stored,
+        "max_plastic_strain": float(plastic.max()),
+        "step": clock["step"],
+        "absent_energy": energies["absent"],
+    }
+
+
 def contact_force(
     p: Problem, s: State, arrays: Arrays, shape: Shape, numbers: Numbers, rows_apart: bool | None, live: int
 ) -> Floats:
