@@ -6,7 +6,6 @@ kind of card, `Cards` hands out the cards of a file in order.
 
 from __future__ import annotations
 
-import os
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -20,18 +19,19 @@ from zrno.translators.faults import MAX_FAULTS as MAX_FAULTS
 from zrno.translators.faults import Fault as Fault
 from zrno.translators.faults import Faults as Faults
 from zrno.translators.faults import InputError as InputError
-
-Ints = NDArray[np.int64]
+from zrno.translators.files import Ints as Ints
+from zrno.translators.files import line_spans as line_spans
+from zrno.translators.files import read_bytes as read_bytes
+from zrno.translators.files import refuse_short_lines as refuse_short_lines
+from zrno.translators.files import write_atomically as write_atomically
 
 _CHUNK = 20_000  # cards looked at together: the cut-out columns stay in the cache
 _FEW = 100_000  # numbers: below this Python parses them before the jitted kernels are loaded
-_LINES_AT_A_TIME = 1 << 23  # bytes searched for line ends
-_MANY_LINES, _SHORTEST_MEAN = 400_000, 8  # lines, and bytes of them with their ends: see refuse_short_lines
 _REAL = re.compile(r"([+-]?)(\d+\.?\d*|\.\d+)(?:[EeDdQq]([+-]?\d+)|([+-]\d+))?$")
 _INTEGER = re.compile(r"[+-]?\d+$")
 _LONGEST_REAL = 1000  # characters: what is longer is no number of a person or a program
 _LONGEST_INTEGER = 19  # characters that are sure to fit 64 bits
-_BLANK, _NEWLINE, _RETURN = b" \n\r"
+_BLANK = ord(" ")
 
 
 def _table(characters: bytes) -> NDArray[np.bool_]:
@@ -41,62 +41,6 @@ def _table(characters: bytes) -> NDArray[np.bool_]:
 
 
 _DIGITS_OR_BLANK = _table(b"0123456789 ")
-
-
-def read_bytes(path: Path | str) -> bytes:
-    """The bytes of a file; InputError when it is missing, unreadable or empty."""
-    where = Path(path)
-    try:
-        data = where.read_bytes()
-    except OSError as error:
-        reason = (
-            "no such file" if isinstance(error, FileNotFoundError) else (error.strerror or "cannot be read").lower()
-        )
-        raise InputError([Fault(str(path), 1, 1, reason, expected="a readable file")]) from error
-    if not data[:4096].strip() and not data.strip():
-        raise InputError([Fault(str(path), 1, 1, "the file is empty", expected="a mesh or a deck")])
-    return data
-
-
-def refuse_short_lines(path: Path | str, size: int, lines: int) -> None:
-    """Raise InputError for a file of `size` bytes that is nothing but short lines: no mesh, and a page of memory each.
-
-    Every line costs its indices; what a real deck says takes tens of bytes a line, so that this is little beside it.
-    """
-    if lines > _MANY_LINES and lines * _SHORTEST_MEAN > size:
-        mean = size / lines
-        said = f"{lines} lines of {mean:.1f} characters on average: nothing that a mesh or a deck would say"
-        expected = f"at least {_SHORTEST_MEAN} characters on average"
-        raise InputError([Fault(str(path), 1, 1, said, expected=expected)])
-
-
-def line_spans(data: bytes) -> tuple[Ints, Ints]:
-    """First byte of each line and the byte past its last, without its end (a newline, or a carriage return and one)."""
-    whole = np.frombuffer(data, np.uint8)
-    pieces = range(0, len(data), _LINES_AT_A_TIME)
-    ends = np.concatenate(
-        [start + np.flatnonzero(whole[start : start + _LINES_AT_A_TIME] == _NEWLINE) for start in pieces]
-    )
-    starts = np.concatenate(([0], ends + 1))
-    if starts[-1] == len(data):  # the newline that ends the last line begins no further one
-        starts = starts[:-1]
-    else:
-        ends = np.concatenate((ends, [len(data)]))
-    returned = (ends > starts) & (whole[np.maximum(ends - 1, 0)] == _RETURN)
-    return starts, ends - returned
-
-
-def write_atomically(path: Path | str, chunks: Iterable[bytes]) -> None:
-    """Write a file under a temporary name in its folder and rename it: it appears whole or not at all."""
-    target = Path(path)
-    temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
-    try:
-        with temporary.open("wb") as out:
-            for chunk in chunks:
-                out.write(chunk)
-        temporary.replace(target)
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def parse_real(text: str, implied: int = 0) -> float | None:

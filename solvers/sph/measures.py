@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..materials import PLASTIC_STRAIN
 from . import across
-from .ledger import total
+from .ledger import STORED, total
 from .particle import DRIVEN
 from .problem import Problem
 from .rings import TURN
@@ -93,6 +93,39 @@ def _energies(p: Problem, s: State, velocity: Floats, i0: int, i1: int) -> dict[
         "artificial_energy": -sum_of("artificial_work"),
         "contact_dissipated": heat,
         "relaxation_dissipated": sum_of("relaxed"),
+    }
+
+
+def row(
+    p: Problem,
+    s: State,
+    velocity: Floats,
+    energies: dict[str, float],
+    force: Floats,
+    live: int,
+    clock: dict[str, float],
+) -> dict[str, float]:
+    """A row of the history. velocity: (d, n); force: of `contact_force`; clock: time, dt and step."""
+    n = live
+    stored = {name: energies[name] for name in STORED}
+    fixed = {name: value for name, value in energies.items() if name not in STORED and name != "absent"}
+    momentum = np.zeros(3)
+    moving = s.fixed[:n] & DRIVEN == 0
+    momentum[: s.d] = (velocity[:, :n] * s.rows("mass")[0, :n])[:, moving].sum(axis=1)
+    if p.axisymmetric:
+        momentum[0] = 0.0  # of a ring
+    plastic = s.rows("state")[PLASTIC_STRAIN, :n] if len(s.rows("state")) else np.zeros(1)
+    return {
+        "time": clock["time"],
+        "dt": clock["dt"],
+        **fixed,
+        **dict(zip(("momentum_x", "momentum_y", "momentum_z"), momentum.tolist(), strict=True)),
+        **dict(zip(("contact_force_x", "contact_force_y", "contact_force_z"), force.tolist(), strict=True)),
+        "active": float(np.count_nonzero(moving)),
+        **stored,
+        "max_plastic_strain": float(plastic.max()),
+        "step": clock["step"],
+        "absent_energy": energies["absent"],
     }
 
 

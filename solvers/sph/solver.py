@@ -16,13 +16,12 @@ from numpy.typing import NDArray
 
 from ..errors import Diverged
 from ..frame import Frame
-from ..materials import PLASTIC_STRAIN
 from ..neighbours import Cells, NeighbourList
 from ..threads import available, run
 from . import across, births, blame, ghosts, local, measures, probes, reference, rest, setup, step
 from .contact import contact_of
 from .driving import Driven
-from .ledger import STORED, Ledger
+from .ledger import Ledger
 from .particle import DRIVEN
 from .problem import Cures, Problem
 from .smoothing import shape_of
@@ -356,30 +355,13 @@ class Solver:
         external_work stays constant.
         """
         s, n = self._state, self.live
-        energies = self.energies()
-        stored = {name: energies.pop(name) for name in STORED}
-        absent = energies.pop("absent")
-        momentum = np.zeros(3)
-        moving = s.fixed[:n] & DRIVEN == 0
-        momentum[: s.d] = (self._velocity()[:, :n] * s.rows("mass")[0, :n])[:, moving].sum(axis=1)
-        if self.problem.axisymmetric:
-            momentum[0] = 0.0  # of a ring
+        velocity = self._velocity()
         force = measures.contact_force(self.problem, s, self._arrays(), self._shape, self._numbers, self._rows_apart, n)
-        plastic = s.rows("state")[PLASTIC_STRAIN, :n] if len(s.rows("state")) else np.zeros(1)
-        return {
-            "time": self.time,
-            "dt": self.dt,
-            **energies,
-            **dict(zip(("momentum_x", "momentum_y", "momentum_z"), momentum.tolist(), strict=True)),
-            **dict(zip(("contact_force_x", "contact_force_y", "contact_force_z"), force.tolist(), strict=True)),
-            "active": float(np.count_nonzero(moving)),
-            **stored,
-            "max_plastic_strain": float(plastic.max()),
-            "step": float(self.step),
-            **({"absent_energy": absent} if self._has.absent else {}),
-            **rest.columns(s.rows("still")[:, :n]),
-            **probes.columns(self.problem, self._state, self.live, self._shape, self._velocity()),
-        }
+        clock = {"time": self.time, "dt": self.dt, "step": float(self.step)}
+        row = measures.row(self.problem, s, velocity, self.energies(), force, n, clock)
+        if not self._has.absent:
+            del row["absent_energy"]
+        return row | rest.columns(s.rows("still")[:, :n]) | probes.columns(self.problem, s, n, self._shape, velocity)
 
     def energy_report(self) -> dict[str, float]:
         """Energies at the start and now, and how far their balance is out, see `Ledger.report`."""

@@ -3,13 +3,15 @@
     .venv/bin/python tests/benchmarks/bench_sph_peers.py [--cells 22 37] [--repeat 3] [--steps 50]
 
 Two elastic cubes of 2 x 2 x 2 cm meet at 100 m/s each; h = 1.3 spacings, cubic kernel, 70 to 80 neighbours; 22
-particles an edge are 21 296, 37 are 101 306. Rates are particle-steps a CPU-second of one thread, without start and
-compiling. Debian's LAMMPS has no MACHDYN: without it our own figures alone are told.
+particles an edge are 21 296, 37 are 101 306. Then two rings in the plane. Rates are particle-steps a CPU-second of one
+thread, without start and compiling; two threads beside one by turns, by the wall. Debian's LAMMPS has no MACHDYN:
+without it our own figures alone are told.
 """
 
 from __future__ import annotations
 
 import argparse
+import os
 import re
 import resource
 import shutil
@@ -18,6 +20,8 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -91,6 +95,28 @@ def lammps(script: Path, cells: int, steps: int) -> float:
     return int(done) * int(atoms) / float(seconds)
 
 
+def tell(
+    name: str, scene: Callable[[], Problem], repeat: int, steps: int, theirs: Callable[[], float] | None = None
+) -> None:
+    """Print a row: medians of one and two threads and the peer by turns."""
+    for threads in (1, 2):
+        ours(scene(), 3, threads)  # kernels
+    one, two, peer = [], [], []
+    for _ in range(repeat):
+        one.append(ours(scene(), steps))
+        two.append(ours(scene(), steps, 2))
+        if theirs:
+            peer.append(theirs())
+    cpu = statistics.median(m[0] for m in one)
+    faster = statistics.median(b[1] / a[1] for a, b in zip(one, two, strict=True))
+    other = f"{statistics.median(peer) / 1e6:6.2f}" if peer else " " * 6
+    n = len(scene().x)
+    print(
+        f"{n:9} {name:34} {cpu / 1e6:8.2f} {two[-1][2]:9.0f} {faster:11.2f} {other}  {os.getloadavg()[0]:.1f}",
+        flush=True,
+    )
+
+
 def main() -> None:
     """Print a row a size and kind."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -104,22 +130,12 @@ def main() -> None:
         subprocess.run(["lmp", "-h"], capture_output=True, text=True, check=False).stdout if shutil.which("lmp") else ""
     )
     peer = "smd/ulsph" in said
+    print(f"{'particles':>9} {'scene':34} {'M/s CPU':>8} {'MB so far':>9} {'two threads':>11} {'ulsph':>6}  load")
     for cells in chosen.cells:
         for name, cures in CURES.items():
-            mine, theirs = [], []
-            ours(blocks(cells, cures=cures), 3)  # kernels
-            for _ in range(chosen.repeat):
-                mine.append(ours(blocks(cells, cures=cures), chosen.steps))
-                if peer and name == "plain":
-                    theirs.append(lammps(chosen.script, cells, chosen.steps))
-            cpu = statistics.median(m[0] for m in mine)
-            line = f"{2 * cells**3:7} particles, {name}: {cpu / 1e6:.2f} M/s CPU (peak {mine[-1][2]:.0f} MB so far)"
-            if theirs:
-                peers = statistics.median(theirs)
-                line += f"; LAMMPS ulsph {peers / 1e6:.2f}, ratio {cpu / peers:.2f}"
-            two = statistics.median(ours(blocks(cells, cures=cures), chosen.steps, 2)[1] for _ in range(chosen.repeat))
-            one = statistics.median(m[1] for m in mine)
-            print(f"{line}; two threads {two / one:.2f} times", flush=True)
+            theirs = partial(lammps, chosen.script, cells, chosen.steps) if peer and name == "plain" else None
+            tell(f"blocks, {name}", partial(blocks, cells, cures=cures), chosen.repeat, chosen.steps, theirs)
+    tell("rings in the plane", rings, chosen.repeat, chosen.steps)
 
 
 if __name__ == "__main__":
