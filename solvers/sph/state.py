@@ -330,48 +330,19 @@ class State:
 
     def arrays(self, neighbours: NeighbourList, others: NeighbourList, reduced: Floats) -> Arrays:
         """What the loops see; views."""
-        positions = {
+        axes = {
             f"{axis}{suffix}": self.row(f"x{suffix}", k)
             for suffix in ("", "_half", "_list", "_start")
             for k, axis in enumerate("xyz")
         }
+        axes |= {name: self.row("u", k) for k, name in enumerate("uvw")}
+        axes |= {f"{letter}{axis}": self.row(letter, k) for letter in "acb" for k, axis in enumerate("xyz")}
+        single = {name: self.row(name) for name in ONE_ROW}
+        several = {name: self.rows(name) for name in ALL_ROWS}
         return Arrays(
-            **positions,
-            u=self.row("u", 0),
-            v=self.row("u", 1),
-            w=self.row("u", 2),
-            ax=self.row("a", 0),
-            ay=self.row("a", 1),
-            az=self.row("a", 2),
-            cx=self.row("c", 0),
-            cy=self.row("c", 1),
-            cz=self.row("c", 2),
-            contact_work=self.row("contact_work"),
-            bx=self.row("b", 0),
-            by=self.row("b", 1),
-            bz=self.row("b", 2),
-            artificial_work=self.row("artificial_work"),
-            heat=self.row("heat"),
-            h_start=self.row("h_start"),
-            h_list=self.row("h_list"),
-            correction=self.rows("correction"),
-            density_rate=self.row("density_rate"),
-            stress_rate=self.rows("stress_rate"),
-            smoothed=self.rows("smoothed"),
-            body_work=self.row("body_work"),
-            wave=self.row("wave"),
-            stress=self.rows("stress"),
-            gradient=self.rows("gradient"),
-            s=self.rows("s"),
-            density=self.row("density"),
-            volume=self.row("volume"),
-            mass=self.row("mass"),
-            h=self.row("h"),
-            energy=self.row("energy"),
-            dissipated=self.row("dissipated"),
-            viscosity=self.row("viscosity"),
-            nearest=self.row("nearest"),
-            state=self.rows("state"),
+            **axes,
+            **single,
+            **several,
             id=self.id,
             material=self.material,
             fixed=self.fixed,
@@ -382,25 +353,19 @@ class State:
             c_count=others.count,
             c_rows=others.rows,
             reduced=reduced,
-            contact_heat=self.row("contact_heat"),
-            slip=self.rows("slip"),
-            wall_slip=self.rows("wall_slip"),
-            colour=self.rows("colour"),
-            mobilised=self.rows("mobilised"),
-            hoop=self.row("hoop"),
-            deformation=self.rows("deformation"),
-            hourglass=self.rows("hourglass"),
-            nominal=self.rows("nominal"),
-            held=self.rows("held"),
-            impulse=self.rows("impulse"),
-            thrust=self.rows("thrust"),
-            face_slip=self.rows("face_slip"),
-            still=self.row("still"),
-            quiet=self.row("quiet"),
-            push=self.rows("push"),
-            interface=self.rows("interface"),
-            relaxed=self.rows("relaxed"),
             packed=self.packed,
             beside=self.beside,
             near=buffers(len(reduced)),
         )
+
+
+# what the loops see under its own name: one row of it, or all
+ONE_ROW = (
+    "contact_work", "artificial_work", "heat", "h_start", "h_list", "density_rate", "body_work", "wave", "density",
+    "volume", "mass", "h", "energy", "dissipated", "viscosity", "nearest", "contact_heat", "hoop", "still", "quiet",
+)  # fmt: skip
+ALL_ROWS = (
+    "correction", "stress_rate", "smoothed", "stress", "gradient", "s", "state", "slip", "wall_slip", "colour",
+    "mobilised", "deformation", "hourglass", "nominal", "held", "impulse", "thrust", "face_slip", "push",
+    "interface", "relaxed",
+)  # fmt: skip
