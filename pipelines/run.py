@@ -86,7 +86,9 @@ def run(
         ready.models, scene, directory, end, ready.digest, resume=state is not None
     )
     bar = Progress(end, show=progress)
-    balance = Balance(interval=history.interval, step_factor=getattr(solver.problem, "step_factor", None))
+    original = chosen.run.get("compat") == "original"
+    factor = getattr(solver.problem, "step_factor", None)
+    balance = Balance(interval=history.interval, step_factor=factor, original=original)
     watchers: list[Observer] = [series, history, checkpointer, balance, bar]
     if ready.listing:
         watchers.append(Listing(directory, model.title, resume=state is not None))

@@ -59,9 +59,16 @@ def test_since_when_it_has_been_out(drive: Any, errors: tuple[float, ...], said:
         assert "step_factor below 2" in warning
 
 
-def test_an_interface_that_makes_the_energy_is_blamed() -> None:
-    for made, cause in ((0.09, "lag between structure and particles"), (0.01, "step_factor")):
-        solver = Made(0.1, interface=made)
-        balance = Balance(interval=0.1, step_factor=0.8)
-        balance.start(solver)
-        assert cause in (balance.warning(solver) or "")
+@pytest.mark.parametrize(
+    ("made", "original", "cause"),
+    [
+        (0.09, False, "lag between structure and particles"),
+        (0.01, False, "step_factor"),
+        (0.01, True, "compat=original"),
+    ],
+)
+def test_an_interface_that_makes_the_energy_is_blamed(made: float, original: bool, cause: str) -> None:
+    solver = Made(0.1, interface=made)
+    balance = Balance(interval=0.1, step_factor=0.8, original=original)
+    balance.start(solver)  # type: ignore[arg-type]
+    assert cause in (balance.warning(solver) or "")  # type: ignore[arg-type]

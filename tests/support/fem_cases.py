@@ -43,11 +43,12 @@ def edge_load(nodes: Ints, dof: int, total: float) -> fem.NodalLoad:
 # shells
 
 
-def roof(n: int, modes: int = 4) -> Found:
+def roof(n: int, modes: int = 4, mesh: Any = quads) -> Found:
     """Scordelis-Lo, a quarter of n x n: how far the middle of the free edge sinks, 0.3024."""
     bend = math.radians(40)
-    x, nodes, number = quads(n, n, lambda r, s: np.stack([25 * np.sin(bend * r), 25 * s, 25 * np.cos(bend * r)], -1))
-    fixed = held(len(x), (number[:, 0], "xz"), (number[:, -1], "yac"), (number[0], "xbc"))
+    x, nodes, number = mesh(n, n, lambda r, s: np.stack([25 * np.sin(bend * r), 25 * s, 25 * np.cos(bend * r)], -1))
+    side, middle, crown = (row[row >= 0] for row in (number[:, 0], number[:, -1], number[0]))
+    fixed = held(len(x), (side, "xz"), (middle, "yac"), (crown, "xbc"))
     elements = shell(nodes, 0.25, Elastic.from_engineering(4.32e8, 0.0), density=360.0, modes=modes)
     weight = fem.BodyLoad(np.array([0.0, 0.0, -1.0]))
     solver, _ = solve(problem(x, elements, fixed, body_loads=(weight,)))
@@ -71,17 +72,17 @@ def cylinder(n: int, modes: int = 4) -> Found:
     return -moved(solver, number[0, -1], 2), solver
 
 
-def hemisphere(n: int, modes: int = 4) -> Found:
-    """Pinched, with a hole of 18 degrees, a quarter of n x n: how far a load goes, 0.0940."""
+def hemisphere(n: int, modes: int = 4, mesh: Any = quads, thickness: float = 0.04) -> Found:
+    """Pinched, with a hole of 18 degrees, a quarter of n x n: how far a load goes, 0.0940.
+
+    mesh: of the unit square, a part of the sphere is made of it.
+    """
     top = 0.5 * np.pi - math.radians(18)
-
-    def place(r: Floats, s: Floats) -> Floats:
-        round, up = 0.5 * np.pi * r, top * s
-        return 10 * np.stack([np.cos(up) * np.cos(round), np.cos(up) * np.sin(round), np.sin(up)], -1)
-
-    x, nodes, number = quads(n, n, place)
+    x, nodes, number = mesh(n, n, lambda r, s: np.stack([r, s, 0 * r], -1))
+    turn, up = 0.5 * np.pi * x[:, 0], top * x[:, 1]
+    x = 10 * np.stack([np.cos(up) * np.cos(turn), np.cos(up) * np.sin(turn), np.sin(up)], -1)
     fixed = held(len(x), (number[0], "yac"), (number[-1], "xbc"), (number[0, 0], "z"))
-    elements = shell(nodes, 0.04, Elastic.from_engineering(6.825e7, 0.3), modes=modes)
+    elements = shell(nodes, thickness, Elastic.from_engineering(6.825e7, 0.3), modes=modes)
     loads = (loaded(number[0, 0], 0, 1.0), loaded(number[-1, 0], 1, -1.0))
     solver, _ = solve(problem(x, elements, fixed, nodal_loads=loads))
     return moved(solver, number[0, 0], 0), solver

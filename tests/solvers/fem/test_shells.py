@@ -168,13 +168,7 @@ def test_twisted_beam(thickness: float, dof: int, reference: float, shares: tupl
 
 def test_a_thin_plate_does_not_lock() -> None:
     """Clamped, under pressure, thickness over length 1e-4: Timoshenko's 0.00126532 q a^4 / D."""
-    x, nodes, number = quads(16, 16, lambda r, s: np.stack([0.5 * r, 0.5 * s, 0 * r], -1))
-    fixed = held(len(x), (slice(None), "c"), (number[0], "xb"), (number[:, 0], "ya"),
-                 (np.concatenate([number[-1], number[:, -1]]), "xyzab"))  # fmt: skip
-    faces = fem.FaceLoad("quad4", nodes, np.full(nodes.shape, 1.0))
-    solver, _ = solve(problem(x, shell(nodes, 1e-4, STEEL), fixed, face_loads=(faces,)))
-    stiffness = 2.1e5 * 1e-12 / (12 * (1 - 0.09))
-    assert -moved(solver, number[0, 0], 2) * stiffness / 0.00126532 == pytest.approx(1.0, abs=0.002)
+    assert cases.plate(16, True, False, h=1e-4)[0] / 0.00126532 == pytest.approx(1.0, abs=0.002)
 
 
 def test_a_folded_tube_twists_as_bredt_says() -> None:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
+import fem_cases as cases
 import numpy as np
 import pytest
 from fem_meshes import (
@@ -12,7 +14,6 @@ from fem_meshes import (
     group,
     held,
     line_load,
-    loaded,
     moved,
     nine,
     problem,
@@ -137,18 +138,11 @@ def test_turning_a_shell_leaves_no_stress() -> None:
 @pytest.mark.parametrize(("kind", "share"), [("quad9", 0.9952), ("quad8", 0.9952)])
 def test_scordelis_lo_roof(kind: str, share: float) -> None:
     """Converged shells are at 0.9964 of MacNeal & Harder's 0.3024."""
-    bend = math.radians(40)
-    x, nodes, number = MESH[kind](
-        8, 8, lambda r, s: np.stack([25 * np.sin(bend * r), 25 * s, 25 * np.cos(bend * r)], -1)
-    )
-    side, middle, crown = (row[row >= 0] for row in (number[:, 0], number[:, -1], number[0]))
-    fixed = held(len(x), (side, "xz"), (middle, "yac"), (crown, "xbc"))
-    elements = shell(nodes, 0.25, Elastic.from_engineering(4.32e8, 0.0), density=360.0)
-    weight = fem.BodyLoad(np.array([0.0, 0.0, -1.0]))
-    solver, _ = solve(problem(x, elements, fixed, body_loads=(weight,)))
-    assert -moved(solver, number[-1, -1], 2) / 0.3024 == pytest.approx(share, abs=0.002)
+    sinks, solver = cases.roof(8, 0, MESH[kind])
+    assert sinks / 0.3024 == pytest.approx(share, abs=0.002)
     shown = output.frame(solver)
-    assert len(shown.nodes["displacement"]) == len(x)  # the nodes that the run keeps to itself are not shown
+    own = len(solver.given.x)
+    assert len(shown.nodes["displacement"]) == own  # the nodes that the run keeps to itself are not shown
     assert shown.cells[0].kind == kind
     assert shown.cells[0].nodes.shape[1] == int(kind[-1])
 
@@ -159,24 +153,16 @@ def test_scordelis_lo_roof(kind: str, share: float) -> None:
 )
 def test_pinched_hemisphere(thickness: float, n: int, *, distorted: bool, share: float) -> None:
     """MITC4+ on meshes twice as fine: 0.990, 0.973; distorted 0.991, 0.976. The strains of MITC9: the last one 0.65."""
-    top = 0.5 * np.pi - math.radians(18)
 
-    def place(r: np.ndarray, s: np.ndarray) -> np.ndarray:
-        turn, up = 0.5 * np.pi * r, top * s
-        return 10 * np.stack([np.cos(up) * np.cos(turn), np.cos(up) * np.sin(turn), np.sin(up)], -1)
-
-    x, nodes, number = nine(n, n, _flat)
-    if distorted:
+    def reversed_nine(nx: int, ny: int, place: Any) -> Any:
+        x, nodes, number = nine(nx, ny, place)
         shift = np.zeros_like(x)
         shift[number[::2, ::2], :2] = np.stack(reversed_edges(n), -1) - x[number[::2, ::2], :2]
-        x = straight(x, nodes, shift)
-    x = place(x[:, 0], x[:, 1])
-    fixed = held(len(x), (number[0], "yac"), (number[-1], "xbc"), (number[0, 0], "z"))
-    elements = shell(nodes, thickness, Elastic.from_engineering(6.825e7, 0.3))
-    loads = (loaded(number[0, 0], 0, 1.0), loaded(number[-1, 0], 1, -1.0))
-    solver, _ = solve(problem(x, elements, fixed, nodal_loads=loads))
+        return straight(x, nodes, shift), nodes, number
+
     reference = 0.0940 * (0.04 / thickness) ** 3
-    assert moved(solver, number[0, 0], 0) / reference == pytest.approx(share, abs=0.002)
+    goes, _ = cases.hemisphere(n, 0, reversed_nine if distorted else nine, thickness)
+    assert goes / reference == pytest.approx(share, abs=0.002)
 
 
 @pytest.mark.parametrize("n", [4, 8])
