@@ -12,11 +12,12 @@ from __future__ import annotations
 import sys
 from dataclasses import replace
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 
 from zrno.pipelines.build import particle_problem
-from zrno.solvers.sph import Problem, Solver
+from zrno.solvers.sph import Problem, Solver, setup
 from zrno.solvers.sph import solver as solver_module
 from zrno.translators import read
 
@@ -31,8 +32,9 @@ class ProperStart(Solver):
 class OneDensity(Solver):
     """The sums of the original program where densities differ."""
 
-    def _is_mixed(self) -> bool:
-        return False
+    def __init__(self, problem: Problem) -> None:
+        with patch.object(setup, "is_mixed", lambda _: False):
+            super().__init__(problem)
 
 
 def states(solver: Solver, times: list[float], steps: list[float]) -> list[dict[str, np.ndarray]]:
