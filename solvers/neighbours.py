@@ -214,29 +214,20 @@ def _fill(
     other,
     first,
     count,
-    old_rows,
-    old_room,
     rows,
     room,
     needed,
     dummy,
 ):
-    """Rows of all blocks. needed: what each needs, or -1; what had room in the old rows is copied from there."""
+    """Rows of all blocks. needed: (blocks,) gets the room that each needs; where there is less, its rows are not meant."""
     b = claim(sync, thread, threads, len(needed))
     while b < len(needed):
         i0 = b * BLOCK
         i1 = min(n, i0 + BLOCK)
-        if 0 <= needed[b] <= old_room[b + 1] - old_room[b]:
-            shift = room[b] - old_room[b]
-            for k in range(old_room[b], old_room[b] + needed[b]):
-                rows[k + shift] = old_rows[k]
-            for i in range(i0, i1):
-                first[i] += shift
-        else:
-            needed[b] = _fill_rows(
-                i0, i1, n, x, y, z, h, reach, h_max, origin, size, shape, start, group, other, first, count, rows,
-                room[b], room[b + 1], dummy,
-            )  # fmt: skip
+        needed[b] = _fill_rows(
+            i0, i1, n, x, y, z, h, reach, h_max, origin, size, shape, start, group, other, first, count, rows,
+            room[b], room[b + 1], dummy,
+        )  # fmt: skip
         b = claim(sync, thread, threads, len(needed))
 
 
@@ -315,20 +306,19 @@ class NeighbourList:
         pairs of one body only, or of different bodies only. dummy: pads the rows; by default the number of points.
         """
         reach = skin if h is not None else radius + skin
-        needed = np.full(blocks(self.n), -1)
-        rows, room = self.rows, self._room
+        needed = np.empty(blocks(self.n), np.int64)
         while True:
             run(
                 _fill, threads, cells.n, x, y, z, h, reach, radius, cells.origin, cells.size, cells.shape, cells.start,
-                group, other, self.first, self.count, self.rows, self._room, rows, room, needed,
+                group, other, self.first, self.count, self.rows, self._room, needed,
                 cells.n if dummy is None else dummy,
             )  # fmt: skip
-            self.rows, self._room = rows, room
-            if np.all(needed <= np.diff(room)):
+            if np.all(needed <= np.diff(self._room)):
                 return
             roomy = (needed * 1.1).astype(np.int64) // LANES * LANES + 4 * LANES
-            room = np.concatenate(([0], np.cumsum(roomy)))
-            rows = np.empty(int(room[-1]), np.uint32)
+            self._room = np.concatenate(([0], np.cumsum(roomy)))
+            self.rows = np.empty(0, np.uint32)  # the old ones go before the new ones come: they are a third of a run's memory
+            self.rows = np.empty(int(self._room[-1]), np.uint32)
 
     def build_mapped(
         self,
