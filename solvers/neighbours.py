@@ -219,7 +219,7 @@ def _fill(
     needed,
     dummy,
 ):
-    """Rows of all blocks. needed: (blocks,) gets the room that each needs; where there is less, its rows are not meant."""
+    """Rows of all blocks. needed: (blocks,) gets the room of each; where there is less its rows mean nothing."""
     b = claim(sync, thread, threads, len(needed))
     while b < len(needed):
         i0 = b * BLOCK
@@ -317,7 +317,7 @@ class NeighbourList:
                 return
             roomy = (needed * 1.1).astype(np.int64) // LANES * LANES + 4 * LANES
             self._room = np.concatenate(([0], np.cumsum(roomy)))
-            self.rows = np.empty(0, np.uint32)  # the old ones go before the new ones come: they are a third of a run's memory
+            self.rows = np.empty(0, np.uint32)  # the old go before the new come: a third of a run's memory
             self.rows = np.empty(int(self._room[-1]), np.uint32)
 
     def build_mapped(

@@ -30,12 +30,13 @@ AXES = ("ux", "uy", "uz", "rx", "ry", "rz")
 
 
 class Mechanism(ArithmeticError):
-    """A structure that can move without resistance. node: index; dof: 0..5."""
+    """A structure that can move without resistance. node: index; dof: 0..5; answer: see `Singular`."""
 
-    def __init__(self, node: int, dof: int, cause: str) -> None:
+    def __init__(self, node: int, dof: int, cause: str, answer: Floats | None = None) -> None:
         super().__init__(cause)
         self.node = node
         self.dof = dof
+        self.answer = answer
 
 
 def moment_nodes(problem: Problem) -> NDArray[np.int64]:
@@ -219,9 +220,9 @@ class Assembly:
         if place < 0 and len(self.system.values):
             place = self._softest()
         if self.transform is not None or not 0 <= place < len(self.where):
-            return Mechanism(-1, 0, f"the structure can move without resistance ({error})")
+            return Mechanism(-1, 0, f"the structure can move without resistance ({error})", error.answer)
         node, dof = divmod(int(self.where[place]), 6)
-        return Mechanism(node, dof, cause)
+        return Mechanism(node, dof, cause, error.answer)
 
     def _softest(self) -> int:
         """The equation with the smallest diagonal: a node that hangs loose."""

@@ -87,6 +87,7 @@ def equilibrium(
     if guess is not None:
         stale = stale or _share(residual, loads, internal, largest) > FAST
     first_energy, before = 0.0, math.inf
+    lost: Mechanism | None = None
     for iteration in range(how.most if guess is None else min(how.most, GUESSED)):
         if stale:
             if not stiff:
@@ -95,7 +96,13 @@ def equilibrium(
             definite = _factor(assembly, target, definite=definite)
             trace.factorisations += 1
         stiff = False
-        step = assembly.expand(assembly.solve(residual))
+        try:
+            answer, lost = assembly.solve(residual), None
+        except Mechanism as error:
+            if error.answer is None or (iteration == 0 and guess is None):
+                raise
+            answer, lost = error.answer, error  # flow hardly resists: the forces will tell what the step is worth
+        step = assembly.expand(answer)
         if iteration == 0 and moved is not None:
             step = step + target.change
         along = float(residual @ assembly.gather(step)) if iteration else 0.0
@@ -125,6 +132,8 @@ def equilibrium(
         near = guess is not None and size <= FAST**2  # the matrix is that of the guess, which was good
         stale = not keep and ((always and not near) or (how.method != "modified" and slow))
         before = size
+    if lost is not None:
+        raise lost
     worst = divmod(int(assembly.where[int(np.argmax(np.abs(residual)))]), 6) if assembly.transform is None else None
     count, last = len(trace.residuals), trace.residuals[-1]
     raise NotConverged(f"no equilibrium after {count} iterations: the residual force is {last:.1e} of the loads", worst)

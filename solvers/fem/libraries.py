@@ -19,11 +19,13 @@ Floats = NDArray[np.float64]
 
 
 class Singular(ArithmeticError):
-    """A matrix that has no inverse. equation: the first one without a pivot, -1 unknown."""
+    """A matrix that has no inverse. equation: the first one without a pivot, -1 unknown; answer: what was found all
+    the same, None where nothing was."""
 
-    def __init__(self, equation: int, message: str) -> None:
+    def __init__(self, equation: int, message: str, answer: Floats | None = None) -> None:
         super().__init__(message)
         self.equation = equation
+        self.answer = answer
 
 
 class Factors(Protocol):

@@ -123,7 +123,8 @@ class System:
             x = x + self._factors.solve(left)
         size = float(np.abs(right - self.product(x)).max()) / scale
         if not size < RESIDUAL:
-            raise Singular(-1, f"the residual of the solution is {size:.1e} of the load")
+            answer = x if np.isfinite(size) else None
+            raise Singular(-1, f"the residual of the solution is {size:.1e} of the load", answer)
         if size > POOR:
             log.warning("the linear system is ill-conditioned: the solution leaves %.1e of the load", size)
         return x

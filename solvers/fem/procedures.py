@@ -223,7 +223,7 @@ class Increments(Still):
             shape, internal, trace = equilibrium(
                 solver.assembly, solver.shape, target, dt, how, keep=keep, guess=guess, scale=self._scale
             )
-        except NotConverged:
+        except (NotConverged, Mechanism):
             self._before = None
             if guess is None:
                 raise
