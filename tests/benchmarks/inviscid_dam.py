@@ -3,12 +3,13 @@
     .venv/bin/python tests/benchmarks/inviscid_dam.py [--compare RESULT...]
 
 An independent solution for the sample: potential flow by boundary elements, no particles and no tuned number. A column
-1 wide and 2 high stands between the planes x = 0 and y = 0; gravity is 1/2, so that time is T = t sqrt(2 g / a). The free
-surface is a row of nodes z = x + iy from the floor to the wall, with the potential phi; w = phi + i psi is analytic within,
-psi = 0 on both planes, which are taken in by reflection. Cauchy's integral over linear elements gives psi (Vinje & Brevig
-1981); then dz/dt = conj(dw/dz) and dphi/dt = |dz/dt|^2 / 2 - g y, by Runge and Kutta. Elements are a third as long as
-the liquid is deep there, between two bounds, and are laid anew every other step; every fourth step the surface is smoothed by five
-points (Longuet-Higgins & Cokelet 1976). The column's upper corner is rounded by a fiftieth of its width.
+1 wide and 2 high stands between the planes x = 0 and y = 0; gravity is 1/2, so that time is T = t sqrt(2 g / a). The
+free surface is a row of nodes z = x + iy from the floor to the wall, with the potential phi; w = phi + i psi is
+analytic within, psi = 0 on both planes, which are taken in by reflection. Cauchy's integral over linear elements gives
+psi (Vinje & Brevig 1981); then dz/dt = conj(dw/dz) and dphi/dt = |dz/dt|^2 / 2 - g y, by Runge and Kutta. Elements are
+a third as long as the liquid is deep there, between two bounds, and are laid anew every other step; every fourth step
+the surface is smoothed by five points (Longuet-Higgins & Cokelet 1976). The column's upper corner is rounded by a
+fiftieth of its width.
 
 It prints how far the fronts of two meshes differ, and what is lost of area and energy; with --compare also how far the
 results of `zrno run` are from the solution, and all of them from the experiments.
@@ -186,9 +187,7 @@ def main(results: list[str]) -> None:
     for result in results:
         found: Any = load(Path(result))
         time = np.array(found.times) * np.sqrt(2.0 * 9.81)
-        seen = [
-            front(Cloud(found.arrays("particles", k), 2).of(1), axis="x", heap=True) for k in range(len(time))
-        ]
+        seen = [front(Cloud(found.arrays("particles", k), 2).of(1), axis="x", heap=True) for k in range(len(time))]
         here = np.interp(at[at <= time[-1]], time, seen)
         there = place[at <= time[-1]]
         error = np.linalg.norm(here - there) / np.linalg.norm(there)

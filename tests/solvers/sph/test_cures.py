@@ -251,7 +251,7 @@ def test_stress_diffusion_leaves_grain_at_rest_on_a_plane_alone(dimension: int) 
 
 
 def diffused(solver: Solver) -> tuple[np.ndarray, np.ndarray]:
-    """(n,) and (n, 6) rates of density and stress diffusion as their docstrings say, one pair at a time, with no list."""
+    """(n,) and (n, 6) rates of density and stress diffusion as their docstrings say, pair by pair, with no list."""
     a, numbers, n, d = solver._arrays(), solver._numbers, solver.n, solver.problem.dimension
     images = solver._images.source
     x = np.stack([row[: n + len(images)] for row in (a.x, a.y, a.z)[:d]], axis=1)
