@@ -1,11 +1,14 @@
 """Pair loops that cure known defects of the method; each only runs in a scene that asks for it.
 
 Shapes and arguments as in `pairs`. All but the artificial stress, which rides on the momentum loop, stand here.
+The inner loops have no branch and count without signs, so that they vectorise: that is a factor of eight to ten.
 """
 
 from __future__ import annotations
 
-from ..jit import kernel
+import numpy as np
+
+from ..jit import inlined_kernel, kernel
 from .pairs import TINY
 from .smoothing import inverse_root, shape_slope, shape_value
 
@@ -21,21 +24,32 @@ def _volume_factor(mean, dimension):
     return inverse * inverse * inverse
 
 
-@kernel
-def _drop(i, j, offset, source, z, x, y, zs, body):
-    """g.(x_i - x_j) and its parts along the axes; of an image as far as its source: what lies beyond a plane is as
-    deep as what it mirrors."""
-    if source is not None and offset <= j < offset + len(source):  # the dummy that pads the lists stands behind
-        j = source[j - offset]
-    gx = body[0] * (x[i] - x[j])
-    gy = body[1] * (y[i] - y[j])
-    gz = 0.0
-    if z is not None:
-        gz = body[2] * (zs[i] - zs[j])
-    return gx + gy + gz, gx, gy, gz
+@inlined_kernel
+def _slope(shape, r2, mean, dimension):
+    """(dW/dr)/r / a_d of a pair; one division, which with eight lanes costs as much as ten products."""
+    inverse = 1.0 / mean
+    inverse2 = inverse * inverse
+    q2 = r2 * inverse2 + TINY
+    iq = inverse_root(q2)
+    factor = inverse2 * inverse
+    if dimension > 1:
+        factor *= inverse
+    if dimension > 2:
+        factor *= inverse
+    return factor * shape_slope(shape, q2 * iq, iq)
 
 
-@kernel
+@inlined_kernel
+def _level(j, offset, source):
+    """The particle that lies as deep as j: of an image its source, since what lies beyond a plane is as deep as what it
+    mirrors. No branch; the first source is read in any case, see `ghosts.Images`."""
+    image = np.int64(j) - offset
+    mirrored = 0 <= image < len(source)  # the dummy that pads the lists stands behind
+    found = source[image if mirrored else 0]
+    return np.uint64(found if mirrored else np.int64(j))
+
+
+@inlined_kernel
 def density_diffusion(i0, i1, offset, source, z, shape, x, y, zs, arrays, numbers, rate):
     """rate_i = factor h c sum_j 2 V_j (rho_j - rho_i - rho_i g.(x_j - x_i)/c^2)(x_j - x_i).grad_i W_ij / r^2.
 
@@ -43,37 +57,43 @@ def density_diffusion(i0, i1, offset, source, z, shape, x, y, zs, arrays, number
     at rest keeps its surface; among particles of one material, which has a factor of its own. offset, source: of the
     images, None without.
     """
-    body = numbers.body
+    g0, g1, g2 = numbers.body[0], numbers.body[1], numbers.body[2]
+    dimension = numbers.dimension
+    density, material, volume, h, rows = arrays.density, arrays.material, arrays.volume, arrays.h, arrays.rows
     for i in range(i0, i1):
-        m = arrays.material[i]
+        m = material[i]
         factor = numbers.density_diffusion[m]
-        total = 0.0
         if factor == 0.0:
             rate[i] = 0.0
             continue
-        rho = arrays.density[i]
+        total = 0.0
+        rho = density[i]
         c = numbers.wave[m]
         inverse_c2 = rho / (c * c)
-        for k in range(arrays.first[i], arrays.first[i] + arrays.count[i]):
-            j = arrays.rows[k]
-            if arrays.material[j] != m:
-                continue
-            mean = 0.5 * (arrays.h[i] + arrays.h[j])
-            dx = x[i] - x[j]
-            dy = y[i] - y[j]
+        xi, yi, hi = x[i], y[i], h[i]
+        if z is not None:
+            zi = zs[i]
+        first = np.uint64(arrays.first[i])
+        for k in range(np.uint64(arrays.count[i])):
+            j = rows[first + k]
+            mean = 0.5 * (hi + h[j])
+            dx = xi - x[j]
+            dy = yi - y[j]
             r2 = dx * dx + dy * dy
-            head = _drop(i, j, offset, source, z, x, y, zs, body)[0]
             if z is not None:
-                dz = zs[i] - zs[j]
+                dz = zi - zs[j]
                 r2 += dz * dz
-            q2 = r2 / (mean * mean) + TINY
-            iq = inverse_root(q2)
-            slope = shape_slope(shape, q2 * iq, iq) * _volume_factor(mean, numbers.dimension) / (mean * mean)
-            total -= arrays.volume[j] * (arrays.density[j] - rho + inverse_c2 * head) * slope
-        rate[i] = 2.0 * factor * arrays.h[i] * c * numbers.normal * total
+            slope = _slope(shape, r2, mean, dimension)
+            slope *= volume[j] if material[j] == m else 0.0
+            level = _level(j, offset, source) if source is not None else np.uint64(j)
+            head = g0 * (xi - x[level]) + g1 * (yi - y[level])
+            if z is not None:
+                head += g2 * (zi - zs[level])
+            total -= (density[j] - rho + inverse_c2 * head) * slope
+        rate[i] = 2.0 * factor * hi * c * numbers.normal * total
 
 
-@kernel
+@inlined_kernel
 def stress_diffusion(i0, i1, offset, source, z, shape, x, y, zs, arrays, numbers, rate):
     """rate_i = factor h c sum_j 2 V_j (sigma_j - sigma_i - head)(x_j - x_i).grad_i W_ij / r^2, all components.
 
@@ -82,12 +102,17 @@ def stress_diffusion(i0, i1, offset, source, z, shape, x, y, zs, arrays, numbers
     axes and K the pair's ratio of that stress to the one along g, between 0 and 1: without it the lateral stress of
     grain at rest spreads out evenly over its depth. Among one material; images as in `density_diffusion`.
     """
-    body = numbers.body
-    gravity2 = body[0] ** 2 + body[1] ** 2 + body[2] ** 2
+    g0, g1, g2 = numbers.body[0], numbers.body[1], numbers.body[2]
+    gravity2 = g0 * g0 + g1 * g1 + g2 * g2
     inverse_g2 = 1.0 / gravity2 if gravity2 > 0.0 else 0.0
-    stress = arrays.stress
+    along0, along1, along2 = g0 * g0 * inverse_g2, g1 * g1 * inverse_g2, g2 * g2 * inverse_g2
+    dimension = numbers.dimension
+    material, volume, h, rows = arrays.material, arrays.volume, arrays.h, arrays.rows
+    xx, yy, zz, xy = arrays.stress[0], arrays.stress[1], arrays.stress[2], arrays.stress[3]
+    if z is not None:
+        yz, zx = arrays.stress[4], arrays.stress[5]
     for i in range(i0, i1):
-        m = arrays.material[i]
+        m = material[i]
         factor = numbers.stress_diffusion[m]
         if factor == 0.0:
             rate[:, i] = 0.0
@@ -99,38 +124,45 @@ def stress_diffusion(i0, i1, offset, source, z, shape, x, y, zs, arrays, numbers
         t_yz = 0.0
         t_zx = 0.0
         rho = arrays.density[i]
-        for k in range(arrays.first[i], arrays.first[i] + arrays.count[i]):
-            j = arrays.rows[k]
-            if arrays.material[j] != m:
-                continue
-            mean = 0.5 * (arrays.h[i] + arrays.h[j])
-            dx = x[i] - x[j]
-            dy = y[i] - y[j]
+        xi, yi, hi = x[i], y[i], h[i]
+        xxi, yyi, zzi, xyi = xx[i], yy[i], zz[i], xy[i]
+        if z is not None:
+            zi, yzi, zxi = zs[i], yz[i], zx[i]
+        first = np.uint64(arrays.first[i])
+        for k in range(np.uint64(arrays.count[i])):
+            j = rows[first + k]
+            mean = 0.5 * (hi + h[j])
+            dx = xi - x[j]
+            dy = yi - y[j]
             r2 = dx * dx + dy * dy
             if z is not None:
-                dz = zs[i] - zs[j]
+                dz = zi - zs[j]
                 r2 += dz * dz
-            q2 = r2 / (mean * mean) + TINY
-            iq = inverse_root(q2)
-            slope = shape_slope(shape, q2 * iq, iq) * _volume_factor(mean, numbers.dimension) / (mean * mean)
-            slope *= -arrays.volume[j]
-            drop, gx, gy, gz = _drop(i, j, offset, source, z, x, y, zs, body)
-            p_xx = stress[0, i] + stress[0, j]
-            p_yy = stress[1, i] + stress[1, j]
-            p_zz = stress[2, i] + stress[2, j]
-            down = (p_xx * body[0] ** 2 + p_yy * body[1] ** 2 + p_zz * body[2] ** 2) * inverse_g2
+            slope = _slope(shape, r2, mean, dimension)
+            slope *= -volume[j] if material[j] == m else 0.0
+            level = _level(j, offset, source) if source is not None else np.uint64(j)
+            gx = g0 * (xi - x[level])
+            gy = g1 * (yi - y[level])
+            gz = 0.0
+            if z is not None:
+                gz = g2 * (zi - zs[level])
+            drop = gx + gy + gz
+            p_xx = xxi + xx[j]
+            p_yy = yyi + yy[j]
+            p_zz = zzi + zz[j]
+            down = p_xx * along0 + p_yy * along1 + p_zz * along2
             inverse = 1.0 / down if down < 0.0 else 0.0
             gx += min(max(p_xx * inverse, 0.0), 1.0) * (drop - gx)
             gy += min(max(p_yy * inverse, 0.0), 1.0) * (drop - gy)
             gz += min(max(p_zz * inverse, 0.0), 1.0) * (drop - gz)
-            t_xx += slope * (stress[0, j] - stress[0, i] - rho * gx)
-            t_yy += slope * (stress[1, j] - stress[1, i] - rho * gy)
-            t_zz += slope * (stress[2, j] - stress[2, i] - rho * gz)
-            t_xy += slope * (stress[3, j] - stress[3, i])
+            t_xx += slope * (xx[j] - xxi - rho * gx)
+            t_yy += slope * (yy[j] - yyi - rho * gy)
+            t_zz += slope * (zz[j] - zzi - rho * gz)
+            t_xy += slope * (xy[j] - xyi)
             if z is not None:
-                t_yz += slope * (stress[4, j] - stress[4, i])
-                t_zx += slope * (stress[5, j] - stress[5, i])
-        scale = 2.0 * factor * arrays.h[i] * numbers.wave[m] * numbers.normal
+                t_yz += slope * (yz[j] - yzi)
+                t_zx += slope * (zx[j] - zxi)
+        scale = 2.0 * factor * hi * numbers.wave[m] * numbers.normal
         rate[0, i] = scale * t_xx
         rate[1, i] = scale * t_yy
         rate[2, i] = scale * t_zz
@@ -177,34 +209,41 @@ def pair_viscosity(i0, i1, z, shape, arrays, numbers, heat):
     a_i -= sum_j m_j P grad_i W, P = (-alpha c mu + beta mu^2)/rho, mu = h v.x/(r^2 + 0.01 h^2) for pairs that close in;
     c, rho, alpha, beta are means of both.
     """
-    pair = numbers.pair_viscosity
+    pair, wave, dimension = numbers.pair_viscosity, numbers.wave, numbers.dimension
+    x, y, u, v, h, rows = arrays.x, arrays.y, arrays.u, arrays.v, arrays.h, arrays.rows
+    mass, density, material = arrays.mass, arrays.density, arrays.material
+    if z is not None:
+        w = arrays.w
     for i in range(i0, i1):
-        m = arrays.material[i]
+        m = material[i]
         a0 = 0.0
         a1 = 0.0
         a2 = 0.0
         power = 0.0
-        for k in range(arrays.first[i], arrays.first[i] + arrays.count[i]):
-            j = arrays.rows[k]
-            o = arrays.material[j]
-            mean = 0.5 * (arrays.h[i] + arrays.h[j])
-            dx = arrays.x[i] - arrays.x[j]
-            dy = arrays.y[i] - arrays.y[j]
+        rho, c, alpha, beta = density[i], wave[m], pair[m, 0], pair[m, 1]
+        xi, yi, ui, vi, hi = x[i], y[i], u[i], v[i], h[i]
+        if z is not None:
+            zi, wi = z[i], w[i]
+        first = np.uint64(arrays.first[i])
+        for k in range(np.uint64(arrays.count[i])):
+            j = rows[first + k]
+            o = np.uint64(material[j])
+            mean = 0.5 * (hi + h[j])
+            dx = xi - x[j]
+            dy = yi - y[j]
             r2 = dx * dx + dy * dy
-            closing = (arrays.u[i] - arrays.u[j]) * dx + (arrays.v[i] - arrays.v[j]) * dy
+            closing = (ui - u[j]) * dx + (vi - v[j]) * dy
             if z is not None:
-                dz = z[i] - z[j]
+                dz = zi - z[j]
                 r2 += dz * dz
-                closing += (arrays.w[i] - arrays.w[j]) * dz
-            mu = mean * min(0.0, closing) / (r2 + 0.01 * mean * mean)
-            q2 = r2 / (mean * mean) + TINY
-            iq = inverse_root(q2)
-            slope = shape_slope(shape, q2 * iq, iq) * _volume_factor(mean, numbers.dimension) / (mean * mean)
-            c = 0.5 * (numbers.wave[m] + numbers.wave[o])
-            alpha = 0.5 * (pair[m, 0] + pair[o, 0])
-            beta = 0.5 * (pair[m, 1] + pair[o, 1])
-            push = arrays.mass[j] * slope * 2.0 * (beta * mu - alpha * c) * mu
-            push /= arrays.density[i] + arrays.density[j]
+                closing += (wi - w[j]) * dz
+            distance2 = r2 + 0.01 * mean * mean
+            both = rho + density[j]
+            inverse = 1.0 / (distance2 * both)  # one division for the two
+            mu = mean * min(0.0, closing) * both * inverse
+            speed = 0.5 * (c + wave[o])
+            push = mass[j] * _slope(shape, r2, mean, dimension) * distance2 * inverse
+            push *= ((beta + pair[o, 1]) * mu - (alpha + pair[o, 0]) * speed) * mu
             a0 -= push * dx
             a1 -= push * dy
             if z is not None:

@@ -96,7 +96,7 @@ def follow_stress(g0, g1, n, z, corrected, source, sign, arrays):
 
 @dataclass(frozen=True, slots=True)
 class Images:
-    """source: (g,) particles; sign, shift: (3, g)."""
+    """source: (g,) particles, with memory for one more behind the last (see `cures._level`); sign, shift: (3, g)."""
 
     source: NDArray[np.int64]
     sign: Floats
@@ -166,7 +166,7 @@ def images(planes: tuple[Plane, ...], x: Floats, reach: Any) -> Images:
             sign = np.concatenate((sign, s), axis=1)
             shift = np.concatenate((shift, t), axis=1)
         place = sign[:d] * x[:, source] + shift[:d]
-    return Images(source[n:], np.ascontiguousarray(sign[:, n:]), np.ascontiguousarray(shift[:, n:]))
+    return Images(np.append(source[n:], 0)[:-1], np.ascontiguousarray(sign[:, n:]), np.ascontiguousarray(shift[:, n:]))
 
 
 def _periodic(planes: tuple[Plane, ...], axis: int) -> tuple[float | None, float | None]:
