@@ -32,6 +32,7 @@ TINY = 1e-30
 
 class Faces(NamedTuple):
     """What the loops see. x, v: (3, m) of the nodes; motion: (2,) fastest node, way of it since the list was built.
+    pace: (f,) speed of each facet's fastest node, None where nothing sleeps.
 
     stiff: (bodies,) squared wave speed; radius: (bodies,) in units of h; first, count, rows: the list; thrust, impulse:
     (pairs, nodes d) of each pair on its nodes.
@@ -40,6 +41,7 @@ class Faces(NamedTuple):
     x: Any
     v: Any
     motion: Any
+    pace: Any
     corners: Any
     half: Any
     closed: Any
@@ -371,6 +373,21 @@ def add_impulse(i0, i1, duration, faces):
         for pair in range(faces.first[i], faces.first[i] + faces.count[i]):
             for c in range(faces.thrust.shape[1]):
                 faces.impulse[pair, c] += duration * faces.thrust[pair, c]
+
+
+@kernel
+def pace(i, faces, touched):
+    """Speed of the fastest node of the facets listed with a particle, or of those that it touches."""
+    fastest = 0.0
+    for pair in range(faces.first[i], faces.first[i] + faces.count[i]):
+        speed = faces.pace[faces.rows[pair]]
+        if speed > fastest:
+            near = not touched
+            for c in range(faces.thrust.shape[1]):
+                near = near or faces.thrust[pair, c] != 0.0
+            if near:
+                fastest = speed
+    return fastest
 
 
 @kernel

@@ -170,8 +170,9 @@ def advance(
     done = 0
     pending = progress[PENDING] > 0.0
     reason = PAUSED
-    if resting is not None:
-        rest.settle(i0, i1, n, cx, image_source, offset, arrays)  # the lists may be new
+    fresh = pending
+    if resting is not None:  # the lists may be new, and the facets have set out
+        rest.settle(i0, i1, n, cx, resting, image_source, offset, faces, fresh, arrays)
     barrier(sync, threads)  # all have read what the first will write
     while True:
         if pending:
@@ -259,6 +260,8 @@ def advance(
                 while a < b:
                     if resting is not None:  # the deep are to wake into a stable step
                         least = min(least, critical_step(at, a, z, wave, numbers, arrays))
+                        if faces is not None:  # and weigh on what they lie on
+                            facing.add_impulse(at, a, 0.5 * last, faces)
                         at = b
                     part = force(
                         a, b, shape, near, z, h, mass, nearest, line, cx, contact, mixed, correction, bx, artificial,
@@ -269,6 +272,8 @@ def advance(
                     a, b = rest.run_of(b, end, resting, most, arrays.still)
                 if resting is not None:
                     least = min(least, critical_step(at, end, z, wave, numbers, arrays))
+                    if faces is not None:
+                        facing.add_impulse(at, end, 0.5 * last, faces)
                 c = claim(sync, thread, threads, chunks)
             arrays.reduced[thread, 2] = least
             barrier(sync, threads)
@@ -276,14 +281,17 @@ def advance(
             if last > 0.0:
                 dt = min(dt, GROWTH * last)
             if resting is not None:
-                arrays.reduced[thread, 5] = rest.wake(i0, i1, z, resting, look, last, arrays)
+                arrays.reduced[thread, 5] = rest.wake(
+                    i0, i1, n, z, cx, resting, image_source, offset, driven, faces, look, last, arrays
+                )
                 barrier(sync, threads)
                 woken = arrays.reduced[:threads, 5].max() > 0.0
-                if look:
+                if look and time >= numbers.body_times[-1]:  # gravity is what it will be
                     rest.fall_asleep(i0, i1, n, z, cx, resting, image_source, offset, last, arrays)
                     barrier(sync, threads)
-                if look or woken:
-                    rest.settle(i0, i1, n, cx, image_source, offset, arrays)
+                if look or woken or fresh:
+                    rest.settle(i0, i1, n, cx, resting, image_source, offset, faces, False, arrays)
+                fresh = False
             pending = False
         if done == steps or (done > 0 and time >= pause):
             break
@@ -308,7 +316,7 @@ def advance(
             kick(a, b, z, cx, bx, body_work, 0.5 * (last + now), now, arrays, numbers)
             a, b = rest.run_of(b, i1, resting, rest.AWAKE, arrays.still)
         if resting is not None:
-            rest.count_quiet(i0, i1, z, resting, now, arrays)
+            rest.count_quiet(i0, i1, z, resting, faces, now, arrays)
         if driven is not None:
             driving.add_impulse(i0, i1, 0.5 * now, arrays)
         if faces is not None:
