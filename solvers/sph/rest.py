@@ -10,9 +10,9 @@ when that passes the limit, at once if it is pushed hard, in the end if for long
 what swings to and fro. Of the held that is found in each step, of the deep in each LOOK-th, when the forces on all are
 found. Who wakes has its neighbours held from then on: a disturbance wakes ring after ring of neighbours.
 
-On a structure nobody falls asleep while what it touches is not quiet, and a sleeper wakes at once when that moves faster
-than the limit. It is held, and its force on the structure computed, while a facet near it moves at all; on one that
-stands still it may be deep, and its force goes on as it is. Particles that are nodes of a structure do not sleep.
+On a structure nobody falls asleep while what it touches is not quiet, and a sleeper wakes at once when that moves
+faster than the limit. It is held while a facet near it moves at all, on one that stands still it may be deep. What it
+exerts on facets stays as it was (`leaning`). Particles that are nodes of a structure do not sleep.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..jit import kernel
-from . import facing
+from . import leaning
 from .particle import DRIVEN
 from .problem import Floats, Problem
 
@@ -115,9 +115,7 @@ def _alone(i, n, cx, source, offset, row, least, only, arrays):
     a = arrays
     if _restless(i, n, a.first, a.count, a.rows, source, offset, row, least, only, a.fixed):
         return False
-    return cx is None or not _restless(
-        i, n, a.c_first, a.c_count, a.c_rows, source, offset, row, least, only, a.fixed
-    )
+    return cx is None or not _restless(i, n, a.c_first, a.c_count, a.c_rows, source, offset, row, least, only, a.fixed)
 
 
 @kernel
@@ -155,7 +153,7 @@ def wake(i0, i1, n, z, cx, resting, source, offset, driven, faces, look, dt, arr
             speed2 += arrays.push[k, i] ** 2
         called = speed2 > resting.speed * resting.speed
         if faces is not None:
-            called = called or facing.pace(i, faces, True) > resting.speed
+            called = called or leaning.pace(i, faces, True) > resting.speed
         if driven is not None and arrays.still[i] == HELD:
             called = called or not _alone(i, n, cx, source, offset, arrays.quiet, TINY, DRIVEN, arrays)
         if called:
@@ -170,7 +168,7 @@ def wake(i0, i1, n, z, cx, resting, source, offset, driven, faces, look, dt, arr
 
 
 @kernel
-def fall_asleep(i0, i1, n, z, cx, resting, source, offset, dt, arrays):
+def fall_asleep(i0, i1, n, z, cx, resting, source, offset, faces, dt, arrays):
     """Puts those of a range to sleep that have been quiet for long, as have their neighbours. dt: the last step."""
     d = 3 if z is not None else 2
     for i in range(i0, i1):
@@ -198,6 +196,8 @@ def fall_asleep(i0, i1, n, z, cx, resting, source, offset, dt, arrays):
         if z is not None:
             arrays.w[i] = 0.0
             arrays.z_half[i] = z[i]
+        if faces is not None:
+            leaning.remember(i, faces, arrays.bears)
         arrays.still[i] = HELD
 
 
@@ -212,13 +212,13 @@ def settle(i0, i1, n, cx, resting, source, offset, faces, fresh, arrays):
             deep = _alone(i, n, cx, source, offset, arrays.still, HELD, None, arrays)
             if faces is not None:
                 deep = deep and not (fresh and faces.count[i] > 0)
-                deep = deep and facing.pace(i, faces, False) <= STANDS * resting.speed
+                deep = deep and leaning.pace(i, faces, False) <= STANDS * resting.speed
             arrays.still[i] = DEEP if deep else HELD
 
 
 @kernel
 def count_quiet(i0, i1, z, resting, faces, dt, arrays):
-    """How long each awake particle of a range, and the facets that it touches, have been quiet, with the step to come."""
+    """How long each awake particle of a range and the facets that it touches have been quiet, with the step to come."""
     for i in range(i0, i1):
         if arrays.still[i] != AWAKE:
             continue
@@ -227,5 +227,5 @@ def count_quiet(i0, i1, z, resting, faces, dt, arrays):
             speed2 += arrays.w[i] ** 2
         quiet = speed2 < resting.speed * resting.speed
         if faces is not None:
-            quiet = quiet and facing.pace(i, faces, True) <= resting.speed
+            quiet = quiet and leaning.pace(i, faces, True) <= resting.speed
         arrays.quiet[i] = arrays.quiet[i] + dt if quiet else 0.0

@@ -72,7 +72,7 @@ def strain(
 def force(
     i0, i1, shape, near, z, h, mass, nearest, line, cx, contact, mixed, correction, bx, artificial, heat, body_work,
     wave, friction, damping, normals, by_normals, planes, wall_slip, contact_heat, plain, hoop, rows_apart, reference,
-    driven, faces, face_slip, dt, arrays, numbers,
+    driven, faces, face_slip, resting, dt, arrays, numbers,
 ):  # fmt: skip
     """Accelerations of a range of particles; returns their critical step."""
     if mixed is not None:
@@ -110,9 +110,13 @@ def force(
         )
     if faces is not None:
         if planes is not None:
-            held = facing.face_force(i0, i1, z, faces, planes, damping, face_slip, contact_heat, dt, cx, arrays)
+            held = facing.face_force(
+                i0, i1, z, faces, planes, damping, face_slip, contact_heat, resting, dt, cx, arrays
+            )
         else:
-            held = facing.face_force(i0, i1, z, faces, contact, damping, face_slip, contact_heat, dt, cx, arrays)
+            held = facing.face_force(
+                i0, i1, z, faces, contact, damping, face_slip, contact_heat, resting, dt, cx, arrays
+            )
         least = min(least, held)
         facing.add_impulse(i0, i1, 0.5 * dt, faces)
     if driven is not None:
@@ -266,7 +270,7 @@ def advance(
                     part = force(
                         a, b, shape, near, z, h, mass, nearest, line, cx, contact, mixed, correction, bx, artificial,
                         heat, body_work, wave, friction, damping, normals, by_normals, planes, wall_slip, contact_heat,
-                        plain, hoop, rows_apart, reference, driven, faces, face_slip, last, arrays, numbers,
+                        plain, hoop, rows_apart, reference, driven, faces, face_slip, resting, last, arrays, numbers,
                     )  # fmt: skip
                     least = min(least, part)
                     a, b = rest.run_of(b, end, resting, most, arrays.still)
@@ -287,7 +291,7 @@ def advance(
                 barrier(sync, threads)
                 woken = arrays.reduced[:threads, 5].max() > 0.0
                 if look and time >= numbers.body_times[-1]:  # gravity is what it will be
-                    rest.fall_asleep(i0, i1, n, z, cx, resting, image_source, offset, last, arrays)
+                    rest.fall_asleep(i0, i1, n, z, cx, resting, image_source, offset, faces, last, arrays)
                     barrier(sync, threads)
                 if look or woken or fresh:
                     rest.settle(i0, i1, n, cx, resting, image_source, offset, faces, False, arrays)
