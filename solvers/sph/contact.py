@@ -97,7 +97,7 @@ def contact_of(problem: Problem, shape: Shape) -> Contact:
         by_normals=True if problem.contact_by_normals else None,
         surface=None
         if problem.facets is None
-        else Surface(problem.facets, problem.dimension, wave**2, _radius(problem)),
+        else Surface(problem.facets, problem.dimension, wave**2, _radius(problem), watched=problem.sleep > 0.0),
     )
 
 

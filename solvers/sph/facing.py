@@ -21,6 +21,7 @@ from ..contact.facets import facet_push, nearest_on_segment, nearest_on_triangle
 from ..contact.friction import FORGET, follow, rub
 from ..jit import kernel
 from .across import CLOSING, stable_step
+from .leaning import lean
 
 MOST = 3  # contacts of a particle at once
 LOOKED_AT = 12  # facets that it may overlap
@@ -32,6 +33,7 @@ TINY = 1e-30
 
 class Faces(NamedTuple):
     """What the loops see. x, v: (3, m) of the nodes; motion: (2,) fastest node, way of it since the list was built.
+    pace: (f,) speed of each facet's fastest node, None where nothing sleeps.
 
     stiff: (bodies,) squared wave speed; radius: (bodies,) in units of h; first, count, rows: the list; thrust, impulse:
     (pairs, nodes d) of each pair on its nodes.
@@ -40,6 +42,7 @@ class Faces(NamedTuple):
     x: Any
     v: Any
     motion: Any
+    pace: Any
     corners: Any
     half: Any
     closed: Any
@@ -213,11 +216,11 @@ def _slot(slip, i, d, nx, ny, nz, taken):
 
 
 @kernel
-def face_force(i0, i1, z, faces, law, damping, slip, heat, dt, cx, arrays):
+def face_force(i0, i1, z, faces, law, damping, slip, heat, resting, dt, cx, arrays):
     """Adds the facets' forces to a range of particles and keeps what their nodes feel; returns the stable step.
 
     law: None where cx does not yet hold what other bodies and planes do. slip: None without friction, or rows as
-    `slip_rows`.
+    `slip_rows`. resting: None where nothing sleeps; a sleeper's friction keeps its load.
     """
     u, v = arrays.u, arrays.v
     least = np.inf
@@ -309,7 +312,9 @@ def face_force(i0, i1, z, faces, law, damping, slip, heat, dt, cx, arrays):
                         ex -= out * nx
                         ey -= out * ny
                         ez -= out * nz
-                        load = follow(slip[at + size - 1, i], force, dt, wave, arrays.h[i])
+                        load = slip[at + size - 1, i]
+                        if resting is None or arrays.still[i] == 0.0:
+                            load = follow(load, force, dt, wave, arrays.h[i])
                         slip[at + size - 1, i] = load
                         tx, ty, tz, ex, ey, ez, slid, lost = rub(
                             ex, ey, ez, sx - along * nx, sy - along * ny, sz - along * nz, dt, load, force, k, mass,
@@ -345,6 +350,9 @@ def face_force(i0, i1, z, faces, law, damping, slip, heat, dt, cx, arrays):
                         slip[at + size - 1, i] = follow(slip[at + size - 1, i], 0.0, dt, FORGET * wave, arrays.h[i])
             if total > 0.0:
                 least = min(least, stable_step(mass, total, damping))
+            if resting is not None and arrays.still[i] != 0.0 and count > 0:
+                row = found[chosen[0]]
+                lean(i, int(row[12]), row, a0, a1, a2, faces, arrays.bears)
             a0 /= mass
             a1 /= mass
             a2 /= mass

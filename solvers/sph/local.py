@@ -283,7 +283,7 @@ def advance(
                 own = step.force(
                     a, b, shape, near, z, h, mass, nearest, line, None, None, None, correction, bx, artificial, heat,
                     None, wave, None, None, None, None, None, None, None, plain, None, correction, reference,
-                    None, None, None, since, arrays, numbers,
+                    None, None, None, None, since, arrays, numbers,
                 )  # fmt: skip
                 if c < slow_chunks:
                     met = _meet(

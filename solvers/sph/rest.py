@@ -9,6 +9,10 @@ What wakes a sleeper is the push that it is given, a speed: push' = (a - a when 
 when that passes the limit, at once if it is pushed hard, in the end if for long with BEARS of its weight, and not by
 what swings to and fro. Of the held that is found in each step, of the deep in each LOOK-th, when the forces on all are
 found. Who wakes has its neighbours held from then on: a disturbance wakes ring after ring of neighbours.
+
+On a structure nobody falls asleep while what it touches is not quiet, and a sleeper wakes at once when that moves
+faster than the limit. It is held while a facet near it moves at all, on one that stands still it may be deep. What it
+exerts on facets stays as it was (`leaning`). Particles that are nodes of a structure do not sleep.
 """
 
 from __future__ import annotations
@@ -19,12 +23,16 @@ from typing import NamedTuple
 import numpy as np
 
 from ..jit import kernel
+from . import leaning
+from .particle import DRIVEN
 from .problem import Floats, Problem
 
 AWAKE, HELD, DEEP = 0.0, 1.0, 2.0  # values of the row `still`
 LOOK = 32  # steps between looks at all sleepers, and at who may fall asleep
 PASSAGES = 100.0  # of a wave through a smoothing length, that a particle has to be quiet for
 BEARS = 0.02  # of its weight, that a sleeper holds out against
+STANDS = 1e-3  # of the limit of speed: what a facet's way in LOOK steps changes of a force is then within BEARS
+TINY = 1e-300  # a time that is none
 FALLS = 10.0  # times in which gravity makes the limit of the speed, for the same: longer than a throw's turning point
 
 
@@ -43,16 +51,15 @@ def resting(p: Problem, wave: Floats) -> Resting | None:
     """
     if p.sleep <= 0.0:
         return None
-    weight = math.sqrt(sum(a * a for a in p.body_force))
+    weight = math.sqrt(sum(a * a for a in (p.body_force if p.body_curve is None else p.body_curve[1][-1])))
     hindered = {
-        "without a constant base acceleration": weight == 0.0 or p.body_curve is not None,
+        "without a constant base acceleration": weight == 0.0,
         "with total-Lagrangian bodies": any(b.lagrangian for b in p.bodies),
         "with local time steps": p.local_steps is True,
         "with the arithmetic of the original program": p.original,
         "with XSPH": p.cures.xsph > 0.0,
         "with a changing h": p.h_option != 0,
         "in an axisymmetric run": p.axisymmetric,
-        "on a structure": p.driven is not None or p.facets is not None,
     }
     for name, there in hindered.items():
         if there:
@@ -84,8 +91,11 @@ def run_of(i, end, resting, most, still):
 
 
 @kernel
-def _restless(i, n, first, count, rows, source, offset, row, least):
-    """Whether a listed neighbour's entry of a row is below `least`. source: of images, which stand from offset on."""
+def _restless(i, n, first, count, rows, source, offset, row, least, only, fixed):
+    """Whether a listed neighbour's entry of a row is below `least`. source: of images, which stand from offset on.
+
+    only: None, or a bit of `fixed` that counts a neighbour in.
+    """
     for k in range(first[i], first[i] + count[i]):
         j = np.int64(rows[k])
         if j >= n:
@@ -94,17 +104,18 @@ def _restless(i, n, first, count, rows, source, offset, row, least):
             if j - offset >= len(source):
                 continue
             j = source[j - offset]
-        if row[j] < least:
+        if row[j] < least and (only is None or fixed[j] & only):
             return True
     return False
 
 
 @kernel
-def _alone(i, n, cx, source, offset, row, least, arrays):
-    """Whether no neighbour, of any body, is below `least`."""
-    if _restless(i, n, arrays.first, arrays.count, arrays.rows, source, offset, row, least):
+def _alone(i, n, cx, source, offset, row, least, only, arrays):
+    """Whether no neighbour, of any body, is below `least`; see `_restless`."""
+    a = arrays
+    if _restless(i, n, a.first, a.count, a.rows, source, offset, row, least, only, a.fixed):
         return False
-    return cx is None or not _restless(i, n, arrays.c_first, arrays.c_count, arrays.c_rows, source, offset, row, least)
+    return cx is None or not _restless(i, n, a.c_first, a.c_count, a.c_rows, source, offset, row, least, only, a.fixed)
 
 
 @kernel
@@ -119,8 +130,11 @@ def no_diffusion(i0, i1, density_rate, stress_rate, arrays):
 
 
 @kernel
-def wake(i0, i1, z, resting, look, dt, arrays):
-    """Wakes those of a range that have been pushed enough; returns whether there are any. dt: the last step."""
+def wake(i0, i1, n, z, cx, resting, source, offset, driven, faces, look, dt, arrays):
+    """Wakes those of a range that have been pushed enough, or whose structure moves; returns whether there are any.
+
+    dt: the last step.
+    """
     woken = 0.0
     d = 3 if z is not None else 2
     for i in range(i0, i1):
@@ -137,7 +151,12 @@ def wake(i0, i1, z, resting, look, dt, arrays):
                 lasting = (a - arrays.push[d + k, i]) * resting.memory
                 arrays.push[k, i] = kept * arrays.push[k, i] + (1.0 - kept) * lasting
             speed2 += arrays.push[k, i] ** 2
-        if speed2 > resting.speed * resting.speed:
+        called = speed2 > resting.speed * resting.speed
+        if faces is not None:
+            called = called or leaning.pace(i, faces, True) > resting.speed
+        if driven is not None and arrays.still[i] == HELD:
+            called = called or not _alone(i, n, cx, source, offset, arrays.quiet, TINY, DRIVEN, arrays)
+        if called:
             woken = 1.0
             arrays.still[i] = AWAKE
             arrays.quiet[i] = 0.0
@@ -149,13 +168,13 @@ def wake(i0, i1, z, resting, look, dt, arrays):
 
 
 @kernel
-def fall_asleep(i0, i1, n, z, cx, resting, source, offset, dt, arrays):
+def fall_asleep(i0, i1, n, z, cx, resting, source, offset, faces, dt, arrays):
     """Puts those of a range to sleep that have been quiet for long, as have their neighbours. dt: the last step."""
     d = 3 if z is not None else 2
     for i in range(i0, i1):
-        if arrays.still[i] != AWAKE or arrays.quiet[i] < resting.time:
+        if arrays.still[i] != AWAKE or arrays.quiet[i] < resting.time or arrays.fixed[i] & DRIVEN:
             continue
-        if not _alone(i, n, cx, source, offset, arrays.quiet, resting.time, arrays):
+        if not _alone(i, n, cx, source, offset, arrays.quiet, resting.time, None, arrays):
             continue
         motion = 0.0
         for k in range(d):
@@ -177,24 +196,36 @@ def fall_asleep(i0, i1, n, z, cx, resting, source, offset, dt, arrays):
         if z is not None:
             arrays.w[i] = 0.0
             arrays.z_half[i] = z[i]
+        if faces is not None:
+            leaning.remember(i, faces, arrays.bears)
         arrays.still[i] = HELD
 
 
 @kernel
-def settle(i0, i1, n, cx, source, offset, arrays):
-    """Tells the sleepers of a range apart: held beside somebody awake, deep among sleepers."""
+def settle(i0, i1, n, cx, resting, source, offset, faces, fresh, arrays):
+    """Tells the sleepers of a range apart: held beside somebody awake or a facet that moves, deep otherwise.
+
+    fresh: the lists are new, and have no forces of facets yet: who is near one is held.
+    """
     for i in range(i0, i1):
         if arrays.still[i] != AWAKE:
-            arrays.still[i] = DEEP if _alone(i, n, cx, source, offset, arrays.still, HELD, arrays) else HELD
+            deep = _alone(i, n, cx, source, offset, arrays.still, HELD, None, arrays)
+            if faces is not None:
+                deep = deep and not (fresh and faces.count[i] > 0)
+                deep = deep and leaning.pace(i, faces, False) <= STANDS * resting.speed
+            arrays.still[i] = DEEP if deep else HELD
 
 
 @kernel
-def count_quiet(i0, i1, z, resting, dt, arrays):
-    """How long each awake particle of a range has been quiet, with the step that begins."""
+def count_quiet(i0, i1, z, resting, faces, dt, arrays):
+    """How long each awake particle of a range and the facets that it touches have been quiet, with the step to come."""
     for i in range(i0, i1):
         if arrays.still[i] != AWAKE:
             continue
         speed2 = arrays.u[i] ** 2 + arrays.v[i] ** 2
         if z is not None:
             speed2 += arrays.w[i] ** 2
-        arrays.quiet[i] = arrays.quiet[i] + dt if speed2 < resting.speed * resting.speed else 0.0
+        quiet = speed2 < resting.speed * resting.speed
+        if faces is not None:
+            quiet = quiet and leaning.pace(i, faces, True) <= resting.speed
+        arrays.quiet[i] = arrays.quiet[i] + dt if quiet else 0.0

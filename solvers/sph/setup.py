@@ -68,6 +68,7 @@ def rows_of(p: Problem, contact: Contact, cures: Cures, *, local: bool) -> Rows:
         driven=p.driven is not None,
         face_slip=slip_rows(p.dimension) if contact.rubs else 0,
         sleep=p.sleep > 0.0,
+        bears=p.sleep > 0.0 and p.facets is not None,
         birth=p.birth is not None,
         interface=_unequal(p),
         relaxed=p.relaxation != 1.0,

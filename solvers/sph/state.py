@@ -34,7 +34,8 @@ class Arrays(NamedTuple):
     traction by normal force, (d, m) each (see `slip`). Of total-Lagrangian bodies: deformation (d*d): F - I;
     hourglass: rows of `nominal`; nominal (d*d): V P M^-1 - kappa (F - I)/2. held (2 d, m): of
     stiff bodies with local steps, see `local`. hoop: r u, see `rings`. still, quiet, push: of sleeping, see `rest`;
-    push (2 d, m): the speed that a sleeper was pushed to, and its acceleration when it fell asleep.
+    push (2 d, m): the speed that a sleeper was pushed to, and its acceleration when it fell asleep;
+    bears (d, m): force of facets on a sleeper, see `leaning`.
     interface (0 | 1, m): see `across.interface_speed`. impulse, thrust (d, m): of what is driven, see `driving`;
     face_slip: friction on facets, see `facing`. relaxed (0 | 1, m): energy that dynamic relaxation took.
     packed, beside (m, 8): see `packed`; near: buffers for them, see `gather`.
@@ -113,6 +114,7 @@ class Arrays(NamedTuple):
     still: Any
     quiet: Any
     push: Any
+    bears: Any
     interface: Any
     relaxed: Any
     packed: Any
@@ -187,7 +189,7 @@ class Rows:
     state: of the laws; the others say whether: contact, correction, artificial stress, pair viscosity (heat), density
     and stress diffusion, xsph, a changing h, a changing body force, a changing wave speed, heat of contact, slip
     between bodies, normals; wall_slip: walls with friction; total-Lagrangian bodies; local steps; hoop stress of
-    a body of revolution; sleep of what is at rest; birth of particles to come; absent: whether
+    a body of revolution; sleep of what is at rest; bears: on facets; birth of particles to come; absent: whether
     particles may be, which takes no row; interface: bodies much heavier and stiffer than their neighbours; driven
     particles; face_slip: rows of friction on facets; relaxed: dynamic relaxation.
     """
@@ -213,6 +215,7 @@ class Rows:
     driven: bool = False
     face_slip: int = 0
     sleep: bool = False
+    bears: bool = False
     birth: bool = False
     absent: bool = False
     interface: bool = False
@@ -244,7 +247,8 @@ class State:
             "slip": (d + 2) * has.slip, "wall_slip": (d + 2) * has.wall_slip,
             "deformation": d * d if has.lagrangian else 0, "hourglass": HOURGLASS if has.lagrangian else 0,
             "held": 2 * d * has.local, "impulse": d * has.driven, "face_slip": has.face_slip,
-            "still": int(has.sleep), "quiet": int(has.sleep), "push": 2 * d * has.sleep, "birth": int(has.birth),
+            "still": int(has.sleep), "quiet": int(has.sleep), "push": 2 * d * has.sleep, "bears": d * has.bears,
+            "birth": int(has.birth),
             "interface": int(has.interface), "relaxed": int(has.relaxed),
             "state": has.state,
             "gradient": d * d, "s": (d * d if has.correction or has.hoop else 6 if solid else 3), "nearest": 1,
@@ -367,5 +371,5 @@ ONE_ROW = (
 ALL_ROWS = (
     "correction", "stress_rate", "smoothed", "stress", "gradient", "s", "state", "slip", "wall_slip", "colour",
     "mobilised", "deformation", "hourglass", "nominal", "held", "impulse", "thrust", "face_slip", "push",
-    "interface", "relaxed",
+    "bears", "interface", "relaxed",
 )  # fmt: skip

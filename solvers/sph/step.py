@@ -72,7 +72,7 @@ def strain(
 def force(
     i0, i1, shape, near, z, h, mass, nearest, line, cx, contact, mixed, correction, bx, artificial, heat, body_work,
     wave, friction, damping, normals, by_normals, planes, wall_slip, contact_heat, plain, hoop, rows_apart, reference,
-    driven, faces, face_slip, dt, arrays, numbers,
+    driven, faces, face_slip, resting, dt, arrays, numbers,
 ):  # fmt: skip
     """Accelerations of a range of particles; returns their critical step."""
     if mixed is not None:
@@ -110,9 +110,13 @@ def force(
         )
     if faces is not None:
         if planes is not None:
-            held = facing.face_force(i0, i1, z, faces, planes, damping, face_slip, contact_heat, dt, cx, arrays)
+            held = facing.face_force(
+                i0, i1, z, faces, planes, damping, face_slip, contact_heat, resting, dt, cx, arrays
+            )
         else:
-            held = facing.face_force(i0, i1, z, faces, contact, damping, face_slip, contact_heat, dt, cx, arrays)
+            held = facing.face_force(
+                i0, i1, z, faces, contact, damping, face_slip, contact_heat, resting, dt, cx, arrays
+            )
         least = min(least, held)
         facing.add_impulse(i0, i1, 0.5 * dt, faces)
     if driven is not None:
@@ -170,8 +174,9 @@ def advance(
     done = 0
     pending = progress[PENDING] > 0.0
     reason = PAUSED
-    if resting is not None:
-        rest.settle(i0, i1, n, cx, image_source, offset, arrays)  # the lists may be new
+    fresh = pending
+    if resting is not None:  # the lists may be new, and the facets have set out
+        rest.settle(i0, i1, n, cx, resting, image_source, offset, faces, fresh, arrays)
     barrier(sync, threads)  # all have read what the first will write
     while True:
         if pending:
@@ -259,16 +264,20 @@ def advance(
                 while a < b:
                     if resting is not None:  # the deep are to wake into a stable step
                         least = min(least, critical_step(at, a, z, wave, numbers, arrays))
+                        if faces is not None:  # and weigh on what they lie on
+                            facing.add_impulse(at, a, 0.5 * last, faces)
                         at = b
                     part = force(
                         a, b, shape, near, z, h, mass, nearest, line, cx, contact, mixed, correction, bx, artificial,
                         heat, body_work, wave, friction, damping, normals, by_normals, planes, wall_slip, contact_heat,
-                        plain, hoop, rows_apart, reference, driven, faces, face_slip, last, arrays, numbers,
+                        plain, hoop, rows_apart, reference, driven, faces, face_slip, resting, last, arrays, numbers,
                     )  # fmt: skip
                     least = min(least, part)
                     a, b = rest.run_of(b, end, resting, most, arrays.still)
                 if resting is not None:
                     least = min(least, critical_step(at, end, z, wave, numbers, arrays))
+                    if faces is not None:
+                        facing.add_impulse(at, end, 0.5 * last, faces)
                 c = claim(sync, thread, threads, chunks)
             arrays.reduced[thread, 2] = least
             barrier(sync, threads)
@@ -276,14 +285,17 @@ def advance(
             if last > 0.0:
                 dt = min(dt, GROWTH * last)
             if resting is not None:
-                arrays.reduced[thread, 5] = rest.wake(i0, i1, z, resting, look, last, arrays)
+                arrays.reduced[thread, 5] = rest.wake(
+                    i0, i1, n, z, cx, resting, image_source, offset, driven, faces, look, last, arrays
+                )
                 barrier(sync, threads)
                 woken = arrays.reduced[:threads, 5].max() > 0.0
-                if look:
-                    rest.fall_asleep(i0, i1, n, z, cx, resting, image_source, offset, last, arrays)
+                if look and time >= numbers.body_times[-1]:  # gravity is what it will be
+                    rest.fall_asleep(i0, i1, n, z, cx, resting, image_source, offset, faces, last, arrays)
                     barrier(sync, threads)
-                if look or woken:
-                    rest.settle(i0, i1, n, cx, image_source, offset, arrays)
+                if look or woken or fresh:
+                    rest.settle(i0, i1, n, cx, resting, image_source, offset, faces, False, arrays)
+                fresh = False
             pending = False
         if done == steps or (done > 0 and time >= pause):
             break
@@ -308,7 +320,7 @@ def advance(
             kick(a, b, z, cx, bx, body_work, 0.5 * (last + now), now, arrays, numbers)
             a, b = rest.run_of(b, i1, resting, rest.AWAKE, arrays.still)
         if resting is not None:
-            rest.count_quiet(i0, i1, z, resting, now, arrays)
+            rest.count_quiet(i0, i1, z, resting, faces, now, arrays)
         if driven is not None:
             driving.add_impulse(i0, i1, 0.5 * now, arrays)
         if faces is not None:

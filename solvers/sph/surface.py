@@ -48,15 +48,16 @@ def _to_nodes(corners, rows, impulse, d, total):
 class Surface:
     """The facets of a run between its steps: places and velocities of the nodes, the list, impulses.
 
-    stiff, radius: see `Faces`.
+    stiff, radius: see `Faces`; watched: whether particles sleep on them.
     """
 
-    def __init__(self, facets: Facets, dimension: int, stiff: Floats, radius: Floats) -> None:
+    def __init__(self, facets: Facets, dimension: int, stiff: Floats, radius: Floats, *, watched: bool) -> None:
         self.d = max(2, dimension)
         self.facets = facets
         self.x = np.ascontiguousarray(facets.nodes.T)
         self.v = np.zeros_like(self.x)
         self.motion = np.zeros(2)
+        self._pace = np.zeros(len(facets.corners)) if watched else None
         self.total = np.zeros((len(facets.nodes), 3))  # impulse that has been added up
         self._stiff, self._radius = stiff, radius
         none = np.zeros(0, np.int64)
@@ -67,7 +68,7 @@ class Surface:
         """What the loops see; views."""
         friction = self.facets.friction or Coulomb(0.0, 0.0)
         return Faces(
-            self.x, self.v, self.motion, self.facets.corners, self.facets.half, self.facets.closed,
+            self.x, self.v, self.motion, self._pace, self.facets.corners, self.facets.half, self.facets.closed,
             friction.static, friction.kinetic, self._stiff, self._radius, *self._list, *self._pairs,  # type: ignore[call-arg]
         )  # fmt: skip
 
@@ -109,7 +110,14 @@ class Surface:
             self.total[:] = values
             return
         self.v[:] = np.asarray(values).T
-        self.motion[0] = float(np.sqrt((self.v**2).sum(axis=0)).max(initial=0.0))
+        self._measure()
+
+    def _measure(self) -> None:
+        """How fast the nodes are."""
+        speed = np.sqrt((self.v**2).sum(axis=0))
+        self.motion[0] = float(speed.max(initial=0.0))
+        if self._pace is not None:
+            self._pace[:] = speed[self.facets.corners].max(axis=1)
 
     # to be continued
 
@@ -125,6 +133,7 @@ class Surface:
         """Go on from a checkpoint."""
         for name, values in (("x", self.x), ("v", self.v), ("motion", self.motion), ("total", self.total)):
             values[:] = data[f"facets_{name}"]
+        self._measure()
         self._list = tuple(np.array(data[f"facets_{name}"]) for name in ("first", "count", "rows"))
         thrust = np.array(data["facets_thrust"])
         self._pairs = thrust, np.zeros_like(thrust)

@@ -155,7 +155,7 @@ def test_a_lasting_push_wakes_and_a_swinging_one_does_not() -> None:
         for k in range(500):
             arrays.ax[:] = strength * rest.BEARS * 9.81 * (-1.0 if swings and k % 4 > 1 else 1.0)
             arrays.ay[:] = 0.0
-            woken = max(woken, rest.wake(0, 4, None, limits, False, dt, arrays))
+            woken = max(woken, rest.wake(0, 4, 4, None, None, limits, None, 4, None, None, False, dt, arrays))
         assert (woken > 0.0) == wakes
 
 

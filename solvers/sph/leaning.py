@@ -1,0 +1,46 @@
+"""Sleepers and the facets that they lean on (`rest`): how fast those are, and the force that a sleeper exerts.
+
+It is that of the moment in which it fell asleep, until it wakes: a structure that swings a little under a sleeper feels
+its weight, and not the stiffness of what is held.
+"""
+
+from __future__ import annotations
+
+from ..jit import kernel
+
+
+@kernel
+def pace(i, faces, touched):
+    """Speed of the fastest node of the facets listed with a particle, or of those that it touches."""
+    fastest = 0.0
+    for pair in range(faces.first[i], faces.first[i] + faces.count[i]):
+        speed = faces.pace[faces.rows[pair]]
+        if speed > fastest:
+            near = not touched
+            for c in range(faces.thrust.shape[1]):
+                near = near or faces.thrust[pair, c] != 0.0
+            if near:
+                fastest = speed
+    return fastest
+
+
+@kernel
+def remember(i, faces, bears):
+    """Keeps the force of the facets on a particle."""
+    d = len(bears)
+    for k in range(d):
+        bears[k, i] = 0.0
+        for pair in range(faces.first[i], faces.first[i] + faces.count[i]):
+            for q in range(d):
+                bears[k, i] -= faces.thrust[pair, d * q + k]
+
+
+@kernel
+def lean(i, pair, weights, f0, f1, f2, faces, bears):
+    """Makes what the facets feel of a sleeper, f now, what it bears, by way of one pair. weights: of its nodes."""
+    d = len(bears)
+    for k in range(d):
+        force = f0 if k == 0 else f1 if k == 1 else f2
+        missing = bears[k, i] - force
+        for q in range(d):
+            faces.thrust[pair, d * q + k] -= weights[q] * missing
