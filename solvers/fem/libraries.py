@@ -51,7 +51,8 @@ def _mkl() -> Any:
     return library
 
 
-ALIKE = 80  # per cent of their columns that equations of one block share, as MKL's manual advises
+ALIKE = 100  # per cent of their columns that equations of one block share: with 80 MKL 2026.2 crashes on a band matrix
+BLOCKS = 5_000  # equations: below, the analysis takes next to nothing
 SAME_BITS = 0x10002  # MKL_CBWR_AUTO, strict: results do not depend on where arrays lie, and a resumed run goes on alike
 
 
@@ -60,7 +61,7 @@ class Pardiso:
 
     single: factors, and right sides, of half the digits and half the memory; blocks: the ordering goes by groups of
     equations that have the same columns, as a node's have: less than half of the time and memory of the analysis, but
-    the equation that has no pivot is not told. None: where the matrix is definite.
+    the equation that has no pivot is not told. None: where a definite matrix is large.
     """
 
     name = "pardiso"
@@ -79,7 +80,7 @@ class Pardiso:
         o[9] = 13 if self._type == 11 else 8  # pivots are perturbed by 10^-that
         o[10] = o[12] = 1 if self._type == 11 else 0  # scaling and matching
         o[20] = 1  # Bunch-Kaufman
-        self._blocks = self._type == 2 if blocks is None else blocks
+        self._blocks = self._type == 2 and system.n >= BLOCKS if blocks is None else blocks
         o[23] = 1 if self._blocks or (system.threads > 1 and self._type == -2) else 0  # two-level factorisation
         o[27] = 1 if single else 0
         o[34] = 1  # numbers from 0

@@ -109,6 +109,10 @@ class System:
         log.info("single precision factors do not do (%s): all digits from here on", cause)
         self._single, self._factors = False, None
 
+    def release(self) -> None:
+        """Give the memory of the factors back, where no right side is to come."""
+        self._factors, self.factored = None, False
+
     def solve(self, right: Floats) -> Floats:
         """x of K x = right; raises Singular where the residual is not small."""
         assert self._factors is not None
