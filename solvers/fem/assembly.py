@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from ..materials.tangent import symmetric_tangent
@@ -17,6 +18,9 @@ from .libraries import Singular
 from .problem import SMALL, Problem
 from .shape import Shape
 from .stops import Stops
+
+if TYPE_CHECKING:
+    import scipy.sparse as sp
 
 Floats = NDArray[np.float64]
 
@@ -195,6 +199,8 @@ class Assembly:
 
     def _reduce(self, values: Floats) -> None:
         """The matrix of the independent unknowns."""
+        import scipy.sparse as sp
+
         s, t = self.structure, self.transform
         assert t is not None
         upper = sp.csr_matrix((values, s.columns, s.starts), shape=(s.count, s.count))
@@ -280,6 +286,8 @@ class Assembly:
 
     def full_matrix(self, what: str, shape: Shape | None = None) -> sp.csr_matrix:
         """Consistent "mass", or "stiffness" at a shape, of all degrees of freedom (6 n, 6 n), held ones too."""
+        import scipy.sparse as sp
+
         everything = structure.build(self.active, [g.elements.nodes for g in self.groups])
         values = np.zeros(len(everything.columns))
         sink = Sink(np.zeros((self.n, 6)), everything, values)
@@ -307,6 +315,8 @@ class Assembly:
 
     def _relations(self) -> sp.csr_matrix:
         """Free degrees of freedom from independent ones; chains are followed."""
+        import scipy.sparse as sp
+
         number = self.structure.equation
         n = self.structure.count
         rows: dict[int, dict[int, float]] = {}

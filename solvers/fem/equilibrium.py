@@ -84,6 +84,7 @@ def equilibrium(
     internal, of_motion = _evaluate(assembly, shape, start, dt, stiff=stiff, moved=moved)
     residual = _residual(assembly, target, shape, loads, internal, of_motion)
     largest = max(scale.force, _size(loads), _size(of_motion), _size(internal), _size(residual))  # inertia too
+    most = largest / LEAST  # what a wild answer makes of it does not count
     if guess is not None:
         stale = stale or _share(residual, loads, internal, largest) > FAST
     first_energy, before = 0.0, math.inf
@@ -114,7 +115,7 @@ def equilibrium(
             trial, loads, internal, left = _searched(
                 assembly, target, shape, start, step, dt, left, along, (trial, loads, internal)
             )
-        largest = max(largest, _size(loads), _size(internal))
+        largest = max(largest, min(max(_size(loads), _size(internal)), most))
         energy = abs(float(residual @ assembly.gather(step)))
         if iteration == 0:
             first_energy = max(energy, _energy(loads, step), scale.energy if guess is not None else 0.0)

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from .equilibrium import NotConverged
 from .procedures import Still
@@ -48,6 +47,8 @@ class Guided(Still):
 
     def _rigid(self, x: Floats) -> Floats:
         """(n, 3) displacements of the rigid body."""
+        from scipy.spatial.transform import Rotation
+
         middle = x.mean(axis=0)
         arm = x - middle
         size = float(np.abs(arm).max())

@@ -12,7 +12,6 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from ..threads import available
@@ -59,10 +58,14 @@ class System:
     @property
     def matrix(self) -> Any:
         """The stored triangle (or all of it) as scipy's CSR over the same values."""
+        import scipy.sparse as sp
+
         return sp.csr_matrix((self.values, self.columns, self.starts), shape=(self.n, self.n), copy=False)
 
     def full(self) -> Any:
         """The whole matrix."""
+        import scipy.sparse as sp
+
         upper = self.matrix
         return upper if self.kind == "general" else upper + sp.triu(upper, 1).T
 
@@ -105,6 +108,10 @@ class System:
         """Drop what was made in single precision, for good."""
         log.info("single precision factors do not do (%s): all digits from here on", cause)
         self._single, self._factors = False, None
+
+    def release(self) -> None:
+        """Give the memory of the factors back, where no right side is to come."""
+        self._factors, self.factored = None, False
 
     def solve(self, right: Floats) -> Floats:
         """x of K x = right; raises Singular where the residual is not small."""
@@ -175,7 +182,7 @@ def chosen(method: str, n: int) -> str:
 
 
 SMALL = 300  # equations: below, loading a library takes longer than solving
-LARGE = 100_000  # equations of solids: above, half of the factors takes so much less time that answering by them pays
+LARGE = 40_000  # equations of solids: above, half of the factors takes so much less time that answering by them pays
 ALONE = 20_000  # equations: below, a second thread saves next to nothing
 
 METHODS: dict[str, Callable[[System], Factors]] = {

@@ -10,18 +10,17 @@ import math
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from .assembly import Mechanism
-from .eigen import vibrations
 from .equilibrium import NotConverged, Scale, Target, equilibrium
-from .explicit import Stepper
 from .groups.group import Bad
 from .implicit import Integrator
 from .shape import Shape
 
 if TYPE_CHECKING:
+    import scipy.sparse as sp
+
     from .solver import Solver
 
 Floats = NDArray[np.float64]
@@ -142,6 +141,8 @@ class Superposition(Still):
         for curve, motion in motions.items():
             _, of_motion = a.evaluate(zero, zero, 0.0, moved=motion)
             answers.append((curve, 0.0, np.zeros((solver.n, 6)), a.expand(a.solve(-a.gather(of_motion))) + motion))
+        if solver.loads.contact is None:
+            a.system.release()  # before the stresses take theirs
         return answers
 
 
@@ -157,6 +158,8 @@ class Vibrations(Still):
     def take(self, solver: Solver, end: float) -> None:
         p = solver.problem
         if self._found is None:
+            from .eigen import vibrations
+
             lumped = bool(p.dynamics and p.dynamics.lumped)
             self._found = vibrations(solver.assembly, p.modes, lumped=lumped)
         squares, modes = self._found
@@ -309,6 +312,8 @@ class Explicit:
     name = "central differences"
 
     def __init__(self, solver: Solver) -> None:
+        from .explicit import Stepper
+
         assert solver.problem.dynamics is not None
         self.stepper = Stepper(solver.assembly, solver.problem.dynamics, solver.shape, solver.problem.velocity)
 

@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import roots_jacobi
 
 Floats = NDArray[np.float64]
 
@@ -242,6 +241,8 @@ def _tetrahedron(count: int) -> tuple[Floats, Floats]:
 
 def _collapsed_tetrahedron(n: int) -> tuple[Floats, Floats]:
     """Conical product rule (Stroud 1971) with n^3 points, degree 2 n - 1."""
+    from scipy.special import roots_jacobi
+
     lines = []
     for k in range(3):
         x, w = roots_jacobi(n, k, 0)
@@ -256,6 +257,8 @@ def _collapsed_tetrahedron(n: int) -> tuple[Floats, Floats]:
 
 def _collapsed_pyramid(n: int) -> tuple[Floats, Floats]:
     """Gauss in the base, Jacobi to the tip."""
+    from scipy.special import roots_jacobi
+
     x, w = roots_jacobi(n, 2, 0)
     points, weights = _product([_gauss(n), _gauss(n), (0.5 * (x + 1), w / 8)])
     scale = 1 - points[:, 2]

@@ -9,7 +9,7 @@ import pytest
 import scipy.sparse as sp
 
 from zrno.solvers.fem import linear
-from zrno.solvers.fem.libraries import Singular
+from zrno.solvers.fem.libraries import Pardiso, Singular
 from zrno.solvers.threads import available
 
 pytestmark = pytest.mark.skipif("pardiso" not in linear.installed(), reason="PARDISO is not installed")
@@ -100,3 +100,44 @@ def test_threads_are_all_of_a_large_system_and_one_of_a_small_one() -> None:
     assert linear.threads_for(5_000, None) == 1
     assert linear.threads_for(50_000, None) == available()
     assert linear.threads_for(5_000, 3) == linear.threads_for(50_000, 3) == 3
+
+
+def _mesh(seed: int, parts: int) -> sp.csr_matrix:
+    """Random elements of four nodes with `parts` unknowns each, a tenth of them held: the upper triangle."""
+    rng = np.random.default_rng(seed)
+    nodes = 400
+    elements = (rng.integers(0, nodes, (700, 1)) + rng.integers(0, 12, (700, 4))) % nodes
+    near = sp.csr_matrix((np.ones(2800), (np.repeat(np.arange(700), 4), elements.ravel())), shape=(700, nodes))
+    pattern = sp.kron(near.T @ near + sp.eye(nodes), np.ones((parts, parts))).tocsr()
+    free = np.flatnonzero(rng.random(nodes * parts) > 0.1)
+    pattern = sp.triu(pattern[free][:, free], 1).tocsr()
+    pattern.data = -rng.random(pattern.nnz)
+    full = pattern + pattern.T
+    upper = sp.triu(full + sp.diags(1.0 - np.asarray(full.sum(axis=1)).ravel())).tocsr()
+    upper.sort_indices()
+    return upper
+
+
+@pytest.mark.parametrize("single", [False, True])
+@pytest.mark.parametrize("parts", [1, 2, 3, 6])
+def test_factors_by_blocks_are_those_by_equations(parts: int, single: bool) -> None:
+    """Meshes, and a band, in which no two equations have the same columns."""
+    bend = sp.diags([np.ones(39), -2.0 * np.ones(40), np.ones(39)], [-1, 0, 1])
+    band = sp.triu(bend @ bend + sp.eye(40)).tocsr()
+    for upper in (band, *(_mesh(seed, parts) for seed in range(5))):
+        system = _system(upper, single=False)
+        factors = Pardiso(system, single=single, blocks=True)
+        factors.factor(system.values)
+        right = np.ones(system.n)
+        left = right - system.product(factors.solve(right))
+        assert np.abs(left).max() < (1e-4 if single else 1e-12)
+
+
+def test_the_equation_without_a_pivot_is_told_by_blocks_too() -> None:
+    """Block factors alone do not know it."""
+    upper = _mesh(0, 3)
+    system = _system(upper, single=False)
+    system.values[system.starts[777]] = -1.0
+    with pytest.raises(Singular) as told:
+        Pardiso(system, blocks=True).factor(system.values)
+    assert told.value.equation == 777
