@@ -95,10 +95,10 @@ def test_line_search_comes_back_sooner_to_the_same_place() -> None:
     square = 100.0 + 0.05**2
     w = np.roots([1000.0 / square**1.5, 0.0, -1000.0 * 0.05**2 / square**1.5, -2.0])
     exact = float(w[np.isreal(w)].real.max()) - 0.05
-    plain, searched = _string(method="newton"), _string(method="newton", search=True)
-    assert _string()[1] == pytest.approx(exact, rel=1e-6)
-    assert plain[1] == pytest.approx(exact, rel=1e-9)
-    assert searched[1] == pytest.approx(exact, rel=1e-9)
+    assert _string(method="newton")[1] == pytest.approx(exact, rel=1e-9)
+    plain, searched = _string(), _string(search=True)
+    assert plain[1] == pytest.approx(exact, rel=1e-6)
+    assert searched[1] == pytest.approx(exact, rel=1e-6)
     assert searched[0] < plain[0]
 
 
