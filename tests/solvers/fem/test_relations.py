@@ -41,10 +41,12 @@ def test_levers_vibrate() -> None:
     p = _levers(modes=1)
     free = p.fixed.copy()
     free[0, 1] = False
-    springs = (*p.elements, fem.Elements("point1", "spring", np.array([[0]]), np.array([9]), 1, None,
-                                         value=np.eye(6)[1:2] * 50.0),
-               fem.Elements("point1", "mass", np.array([[0]]), np.array([10]), 1, None, value=np.eye(6)[1:2]))  # fmt: skip
-    _, seen = solve(problem(p.x, springs, free, relations=p.relations, modes=1), lambda s: s.history()["frequency"])
+    across = tuple(
+        fem.Elements("point1", kind, np.array([[0]]), np.array([9]), 1, None, value=np.eye(6)[1:2] * value)
+        for kind, value in (("spring", 50.0), ("mass", 1.0))
+    )
+    both = problem(p.x, (*p.elements, *across), free, relations=p.relations, modes=1)
+    _, seen = solve(both, lambda s: s.history()["frequency"])
     assert seen[0] * 2.0 * np.pi == pytest.approx(np.sqrt(18.0 / 9.0), rel=1e-9)
 
 
@@ -75,8 +77,8 @@ def test_two_halves_that_are_tied_are_one_body(geometry: str) -> None:
 
 
 def _string(**how: Any) -> tuple[int, float]:
-    """Two bars of E A = 1000 and length 10 in a line, hardly stressed, pulled across in the middle in one step: Newton's
-    first answer is far too long. Iterations, and the sag."""
+    """Two bars of E A = 1000 and length 10 in a line, pulled across in the middle in one step: Newton's first answer is
+    far too long. Iterations, and the way of the middle."""
     x = np.array([[-10.0, 0, 0], [0.0, 0.05, 0], [10.0, 0, 0]])
     bars = group("line2", "truss", np.array([[0, 1], [1, 2]]), Elastic.from_engineering(1000.0, 0.0),
                  section={"area": 1.0}, geometry="total")  # fmt: skip
@@ -89,16 +91,16 @@ def _string(**how: Any) -> tuple[int, float]:
 def test_line_search_comes_back_sooner_to_the_same_place() -> None:
     """Green's strain of the bars: 2 (E A / L0) e w / L0 L0 = P with e = (w^2 - w0^2) / (2 L0^2), its cubic solved.
 
-    Without factors in each iteration Newton's first answer, 400 away, throws it further out, with forces of 1e20: what is
-    round-off of those is no equilibrium.
+    Without factors in each iteration Newton's first answer, 400 away, throws it further out, with forces of 1e20:
+    what is round-off of those is no equilibrium.
     """
     square = 100.0 + 0.05**2
     w = np.roots([1000.0 / square**1.5, 0.0, -1000.0 * 0.05**2 / square**1.5, -2.0])
     exact = float(w[np.isreal(w)].real.max()) - 0.05
-    plain, searched = _string(method="newton"), _string(method="newton", search=True)
-    assert _string()[1] == pytest.approx(exact, rel=1e-6)
-    assert plain[1] == pytest.approx(exact, rel=1e-9)
-    assert searched[1] == pytest.approx(exact, rel=1e-9)
+    assert _string(method="newton")[1] == pytest.approx(exact, rel=1e-9)
+    plain, searched = _string(), _string(search=True)
+    assert plain[1] == pytest.approx(exact, rel=1e-6)
+    assert searched[1] == pytest.approx(exact, rel=1e-6)
     assert searched[0] < plain[0]
 
 
