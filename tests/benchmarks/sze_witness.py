@@ -4,7 +4,7 @@
 
 An octant of the cylinder (R 100, L 200, t 1, E 30000, nu 0.3) on rigid diaphragms, pinched by a prescribed deflection
 at its middle; C3D20R, one through the thickness, NLGEOM. Prints the load over the published one at some deflections.
-20 cells an edge take some minutes, 40 half an hour on a busy machine. Ours: `tests/solvers/fem/test_benchmarks_shells.py`.
+20 cells an edge take minutes, 40 half an hour on a busy machine. Ours: `tests/solvers/fem/test_benchmarks_shells.py`.
 """
 
 from __future__ import annotations
