@@ -93,7 +93,7 @@ def test_an_elastic_plate_sags_as_under_grain_that_is_awake() -> None:
 
 
 def test_a_swinging_plate_feels_weight_and_no_bed() -> None:
-    """With inertia and undamped it goes on swinging under sleepers; their force is the weight, to what each may be off."""
+    """With inertia and undamped it goes on swinging under sleepers; their force is the weight within BEARS."""
     structure = plate(steps=1000, period=PERIOD)
     coupled = run(drop(structure, at_rest(structure), tolerance=1e-3), SETTLED)
     force, asleep = [], []
