@@ -1,7 +1,8 @@
 """Sleepers and the facets that they lean on (`rest`): how fast those are, and the force that a sleeper exerts.
 
-It is that of the moment in which it fell asleep, until it wakes: a structure that swings a little under a sleeper feels
-its weight, and not the stiffness of what is held.
+It is what it was in the mean before it fell asleep, until it wakes: a structure that swings a little under a sleeper
+feels its weight, and not the stiffness of what is held. The mean is one over time, of a few passages of a wave: contact
+that still trembles would leave the force of a moment.
 """
 
 from __future__ import annotations
@@ -25,14 +26,15 @@ def pace(i, faces, touched):
 
 
 @kernel
-def remember(i, faces, bears):
-    """Keeps the force of the facets on a particle."""
+def remember(i, part, faces, bears):
+    """Takes the mean force of the facets on a particle a part of the way to that of now."""
     d = len(bears)
     for k in range(d):
-        bears[k, i] = 0.0
+        force = 0.0
         for pair in range(faces.first[i], faces.first[i] + faces.count[i]):
             for q in range(d):
-                bears[k, i] -= faces.thrust[pair, d * q + k]
+                force -= faces.thrust[pair, d * q + k]
+        bears[k, i] += part * (force - bears[k, i])
 
 
 @kernel

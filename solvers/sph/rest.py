@@ -12,7 +12,7 @@ found. Who wakes has its neighbours held from then on: a disturbance wakes ring 
 
 On a structure nobody falls asleep while what it touches is not quiet, and a sleeper wakes at once when that moves
 faster than the limit. It is held while a facet near it moves at all, on one that stands still it may be deep. What it
-exerts on facets stays as it was (`leaning`). Particles that are nodes of a structure do not sleep.
+exerts on facets stays the mean of before (`leaning`). Particles that are nodes of a structure do not sleep.
 """
 
 from __future__ import annotations
@@ -33,15 +33,20 @@ PASSAGES = 100.0  # of a wave through a smoothing length, that a particle has to
 BEARS = 0.02  # of its weight, that a sleeper holds out against
 STANDS = 1e-3  # of the limit of speed: what a facet's way in LOOK steps changes of a force is then within BEARS
 TINY = 1e-300  # a time that is none
+MEANS = 5.0  # times over which a force is meant, within that
 FALLS = 10.0  # times in which gravity makes the limit of the speed, for the same: longer than a throw's turning point
 
 
 class Resting(NamedTuple):
-    """speed: under which a particle is quiet; time: that it must have been so; memory: tau, of its push."""
+    """speed: under which a particle is quiet; time: that it must have been so; memory: tau, of its push.
+
+    relaxed: its limit over the step, by what dynamic relaxation bears of a weight that creeps down.
+    """
 
     speed: float
     time: float
     memory: float
+    relaxed: float
 
 
 def resting(p: Problem, wave: Floats) -> Resting | None:
@@ -67,7 +72,8 @@ def resting(p: Problem, wave: Floats) -> Resting | None:
     h = float(p.h.max())
     speed = p.sleep * math.sqrt(weight * h)
     slowest = float(np.min(wave, where=wave > 0.0, initial=np.inf))
-    return Resting(speed, max(PASSAGES * h / slowest, FALLS * speed / weight), speed / (BEARS * weight))
+    relaxed = BEARS * weight / (1.0 - p.relaxation) if p.relaxation < 1.0 else np.inf
+    return Resting(speed, max(PASSAGES * h / slowest, FALLS * speed / weight), speed / (BEARS * weight), relaxed)
 
 
 def columns(still: Floats) -> dict[str, float]:
@@ -168,7 +174,7 @@ def wake(i0, i1, n, z, cx, resting, source, offset, driven, faces, look, dt, arr
 
 
 @kernel
-def fall_asleep(i0, i1, n, z, cx, resting, source, offset, faces, dt, arrays):
+def fall_asleep(i0, i1, n, z, cx, resting, source, offset, dt, arrays):
     """Puts those of a range to sleep that have been quiet for long, as have their neighbours. dt: the last step."""
     d = 3 if z is not None else 2
     for i in range(i0, i1):
@@ -196,8 +202,6 @@ def fall_asleep(i0, i1, n, z, cx, resting, source, offset, faces, dt, arrays):
         if z is not None:
             arrays.w[i] = 0.0
             arrays.z_half[i] = z[i]
-        if faces is not None:
-            leaning.remember(i, faces, arrays.bears)
         arrays.still[i] = HELD
 
 
@@ -225,7 +229,8 @@ def count_quiet(i0, i1, z, resting, faces, dt, arrays):
         speed2 = arrays.u[i] ** 2 + arrays.v[i] ** 2
         if z is not None:
             speed2 += arrays.w[i] ** 2
-        quiet = speed2 < resting.speed * resting.speed
+        quiet = speed2 < min(resting.speed, resting.relaxed * dt) ** 2
         if faces is not None:
             quiet = quiet and leaning.pace(i, faces, True) <= resting.speed
+            leaning.remember(i, min(1.0, MEANS * dt / resting.time), faces, arrays.bears)
         arrays.quiet[i] = arrays.quiet[i] + dt if quiet else 0.0

@@ -35,7 +35,7 @@ class Arrays(NamedTuple):
     hourglass: rows of `nominal`; nominal (d*d): V P M^-1 - kappa (F - I)/2. held (2 d, m): of
     stiff bodies with local steps, see `local`. hoop: r u, see `rings`. still, quiet, push: of sleeping, see `rest`;
     push (2 d, m): the speed that a sleeper was pushed to, and its acceleration when it fell asleep;
-    bears (d, m): force of facets on a sleeper, see `leaning`.
+    bears (d, m): mean force of facets, see `leaning`.
     interface (0 | 1, m): see `across.interface_speed`. impulse, thrust (d, m): of what is driven, see `driving`;
     face_slip: friction on facets, see `facing`. relaxed (0 | 1, m): energy that dynamic relaxation took.
     packed, beside (m, 8): see `packed`; near: buffers for them, see `gather`.

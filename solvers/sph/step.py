@@ -291,7 +291,7 @@ def advance(
                 barrier(sync, threads)
                 woken = arrays.reduced[:threads, 5].max() > 0.0
                 if look and time >= numbers.body_times[-1]:  # gravity is what it will be
-                    rest.fall_asleep(i0, i1, n, z, cx, resting, image_source, offset, faces, last, arrays)
+                    rest.fall_asleep(i0, i1, n, z, cx, resting, image_source, offset, last, arrays)
                     barrier(sync, threads)
                 if look or woken or fresh:
                     rest.settle(i0, i1, n, cx, resting, image_source, offset, faces, False, arrays)

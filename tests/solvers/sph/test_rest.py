@@ -68,6 +68,17 @@ def test_a_column_falls_asleep_under_its_weight(settled: Solver) -> None:
     assert settled.energy_report()["balance_error"] < 2e-3
 
 
+def test_nobody_sleeps_before_gravity_is_what_it_will_be() -> None:
+    """Set on in full and again altered at the end of a table, with time to fall asleep before that and after it."""
+    gravity = np.array([(0.0, -9.81, 0.0), (0.0, -9.81, 0.0), (0.0, -9.80, 0.0)])
+    curve = np.array([0.0, OPENED, OPENED + 0.01]), gravity
+    solver = at(Solver(column(body_curve=curve), threads=1), OPENED + 0.01)
+    assert solver.history()["asleep"] == 0.0
+    at(solver, OPENED + 0.1)
+    assert solver.history()["asleep"] == solver.n
+    assert solver.energy_report()["balance_error"] < 2e-3
+
+
 def test_sleepers_do_not_move(settled: Solver) -> None:
     before = {name: np.array(values) for name, values in settled.frame().particles.items()}
     later = Solver(column(), threads=1)
