@@ -172,7 +172,7 @@ def test_a_lasting_push_wakes_and_a_swinging_one_does_not() -> None:
 
 @pytest.mark.slow
 def test_what_it_saves() -> None:
-    """A column asleep costs a tenth of one that is awake, at most; off is the same to rounding."""
+    """A column asleep costs a fifth of one that is awake, at most; off is the same to rounding."""
 
     def spent(solver: Solver) -> float:
         at(solver, OPENED)
@@ -181,7 +181,7 @@ def test_what_it_saves() -> None:
         return (time.process_time() - began) / (solver.step - steps)
 
     awake, asleep = (Solver(column(100, 10, sleep=sleep), threads=1) for sleep in (NEVER, 0.02))
-    assert spent(asleep) < 0.1 * spent(awake)
+    assert spent(asleep) < 0.2 * spent(awake)
     off = Solver(dataclasses.replace(column(100, 10), sleep=0.0), threads=1)
     at(off, OPENED + 0.2)
     ends = [s.frame().particles for s in (off, awake)]
