@@ -13,6 +13,7 @@ from .assembly import Assembly, Mechanism
 from .groups.group import Bad
 from .problem import Iteration
 from .shape import Shape
+from .structure import dot
 
 Floats = NDArray[np.float64]
 SEARCHED = 0.8  # line search is done where the work along the step stays above this share
@@ -106,7 +107,7 @@ def equilibrium(
         step = assembly.expand(answer)
         if iteration == 0 and moved is not None:
             step = step + target.change
-        along = float(residual @ assembly.gather(step)) if iteration else 0.0
+        along = dot(residual, assembly.gather(step)) if iteration else 0.0
         trial = shape.moved(step)
         loads = target.external(trial)
         internal, _ = _evaluate(assembly, trial, start, dt, stiff=False, moved=None)
@@ -116,7 +117,7 @@ def equilibrium(
                 assembly, target, shape, start, step, dt, left, along, (trial, loads, internal)
             )
         largest = max(largest, min(max(_size(loads), _size(internal)), most))
-        energy = abs(float(residual @ assembly.gather(step)))
+        energy = abs(dot(residual, assembly.gather(step)))
         if iteration == 0:
             first_energy = max(energy, _energy(loads, step), scale.energy if guess is not None else 0.0)
         trace.scale = Scale(largest, first_energy)
@@ -187,7 +188,7 @@ def _searched(
     direction = assembly.gather(step)
     share, before, g0 = 1.0, 0.0, along
     for _ in range(4):
-        g = float(left @ direction)
+        g = dot(left, direction)
         if abs(g) <= SEARCHED * abs(along) or g0 == g:
             break
         share, before = min(max(share - g * (share - before) / (g - g0), 0.1), 2.0), share

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .libraries import Pardiso, Singular
+from .structure import dot
 
 if TYPE_CHECKING:
     from .linear import System
@@ -57,28 +58,23 @@ class Mixed:
         direction, before = x, 1.0
         for k in range(MOST):
             answer = self._factors.solve(left / largest) * largest  # what is left may be below single precision's range
-            size = _dot(left, answer)
+            size = dot(left, answer)
             if not size >= 0.0:
                 break
             if size == 0.0:
                 return x
             direction = answer + (size / before if k else 0.0) * direction
             image = self._system.product(direction)
-            curvature = _dot(direction, image)
+            curvature = dot(direction, image)
             if not curvature > 0.0:
                 break
             step = size / curvature
             x += step * direction
             left -= step * image
             before = size
-            if math.sqrt(size) <= TOLERANCE * math.sqrt(abs(_dot(x, right))):
+            if math.sqrt(size) <= TOLERANCE * math.sqrt(abs(dot(x, right))):
                 return x
             largest = float(np.abs(left).max())
             if largest == 0.0:
                 return x
         raise TooFewDigits(f"more than {MOST} iterations")
-
-
-def _dot(a: Floats, b: Floats) -> float:
-    """Without BLAS, whose second thread waits in a loop for 20 ms after each product, as long as a solution takes."""
-    return float(np.einsum("i,i->", a, b))

@@ -44,9 +44,10 @@ def top_of(grain: Cloud, cell: float) -> np.ndarray:
 
 
 def slope_of(grain: Cloud, cell: float) -> float:
-    """Of the flank [degrees], between 12 and 80 % of the height."""
+    """Of the flank [degrees], from 80 % of the height down to where the tongue of one layer begins."""
     top = top_of(grain, cell)
-    flank = np.flatnonzero((top > 0.12 * top.max()) & (top < 0.8 * top.max()))
+    tongue = int(np.argmax(top < 0.75 * cell))  # beyond it single grains may lie on others
+    flank = np.flatnonzero(top[:tongue] < 0.8 * top.max())
     flank = flank[flank > 1]
     return float(np.degrees(np.arctan(-np.polyfit(cell * flank, top[flank], 1)[0])))
 
