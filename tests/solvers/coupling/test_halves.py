@@ -35,6 +35,7 @@ def half_plate() -> fem.Problem:
     )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_a_block_on_half_an_elastic_plate() -> None:
     found = []
     for structure, planes in ((plate(dynamics=None, steps=1000, period=0.25), ()),

@@ -59,7 +59,7 @@ def middle(structure: fem.Problem) -> int:
     return int(np.argmin(np.abs(structure.x[:, :2] - 0.5 * SIDE).sum(axis=1)))
 
 
-@pytest.mark.parametrize("kernel", [False, True])
+@pytest.mark.parametrize("kernel", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_sleepers_weigh_on_a_rigid_structure(kernel: bool) -> None:
     coupled = run(drop(rigid(), at_rest(rigid(), kernel=kernel)), 60 if kernel else SETTLED)
     row = coupled.history()
@@ -136,7 +136,7 @@ def test_a_plate_that_tilts_wakes_its_block() -> None:
     assert np.linalg.norm(slept - awake, axis=1).max() < 0.005 * slid
 
 
-@pytest.mark.parametrize("kernel", [False, True])
+@pytest.mark.parametrize("kernel", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_a_plate_that_goes_from_under_them_lets_them_fall(kernel: bool) -> None:
     """As the door of a wagon: at once 1 mm/ms down. Deep ones follow ring after ring, none is late by 0.1 ms."""
     begins = 15.0 if kernel else 50.0

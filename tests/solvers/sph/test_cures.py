@@ -133,6 +133,7 @@ def spinning(cures: Cures) -> float:
     return float(now / before - 1.0)
 
 
+@pytest.mark.slow
 def test_a_disk_that_spins_keeps_its_angular_momentum_by_the_correction_alone() -> None:
     """Plain gradients see half of a turn at a free surface and strain it: the disk swings back within half a turn."""
     assert abs(spinning(Cures(correction=True))) < 1e-3

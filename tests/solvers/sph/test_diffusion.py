@@ -46,9 +46,9 @@ def diffused(solver: Solver) -> tuple[np.ndarray, np.ndarray]:
 @pytest.mark.parametrize(
     ("shape", "planes"),
     [
-        ((8, 7), ()),
+        pytest.param((8, 7), (), marks=pytest.mark.slow),
         ((8, 7), (Plane(1, -1, SYMMETRY, -0.02), Plane(0, -1, SYMMETRY, -0.03))),
-        ((8, 7), periodic(0.8)),
+        pytest.param((8, 7), periodic(0.8), marks=pytest.mark.slow),
         ((8, 7), (Plane(1, -1, SYMMETRY, -9.0),)),  # a plane without images
         ((5, 4, 4), (Plane(1, -1, SYMMETRY, -0.02),)),
     ],

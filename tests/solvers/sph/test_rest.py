@@ -68,6 +68,7 @@ def test_a_column_falls_asleep_under_its_weight(settled: Solver) -> None:
     assert settled.energy_report()["balance_error"] < 2e-3
 
 
+@pytest.mark.slow
 def test_nobody_sleeps_before_gravity_is_what_it_will_be() -> None:
     """Set on in full and again altered at the end of a table, with time to fall asleep before that and after it."""
     gravity = np.array([(0.0, -9.81, 0.0), (0.0, -9.81, 0.0), (0.0, -9.80, 0.0)])
