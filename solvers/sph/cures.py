@@ -40,6 +40,18 @@ def _slope(shape, r2, mean, dimension):
 
 
 @inlined_kernel
+def _slope_to(j, xi, yi, zi, hi, shape, x, y, zs, h, dimension):
+    """`_slope` of a place with smoothing length hi and particle j; zs: None in the plane."""
+    dx = xi - x[j]
+    dy = yi - y[j]
+    r2 = dx * dx + dy * dy
+    if zs is not None:
+        dz = zi - zs[j]
+        r2 += dz * dz
+    return _slope(shape, r2, 0.5 * (hi + h[j]), dimension)
+
+
+@inlined_kernel
 def _level(j, offset, source):
     """The particle that lies as deep as j: of an image its source, since what lies beyond a plane is as deep as what it
     mirrors. No branch; the first source is read in any case, see `ghosts.Images`."""
@@ -70,20 +82,13 @@ def density_diffusion(i0, i1, offset, source, z, shape, x, y, zs, arrays, number
         rho = density[i]
         c = numbers.wave[m]
         inverse_c2 = rho / (c * c)
-        xi, yi, hi = x[i], y[i], h[i]
+        xi, yi, zi, hi = x[i], y[i], 0.0, h[i]
         if z is not None:
             zi = zs[i]
         first = np.uint64(arrays.first[i])
         for k in range(np.uint64(arrays.count[i])):
             j = rows[first + k]
-            mean = 0.5 * (hi + h[j])
-            dx = xi - x[j]
-            dy = yi - y[j]
-            r2 = dx * dx + dy * dy
-            if z is not None:
-                dz = zi - zs[j]
-                r2 += dz * dz
-            slope = _slope(shape, r2, mean, dimension)
+            slope = _slope_to(j, xi, yi, zi, hi, shape, x, y, zs, h, dimension)
             slope *= volume[j] if material[j] == m else 0.0
             level = _level(j, offset, source) if source is not None else np.uint64(j)
             head = g0 * (xi - x[level]) + g1 * (yi - y[level])
@@ -124,21 +129,14 @@ def stress_diffusion(i0, i1, offset, source, z, shape, x, y, zs, arrays, numbers
         t_yz = 0.0
         t_zx = 0.0
         rho = arrays.density[i]
-        xi, yi, hi = x[i], y[i], h[i]
+        xi, yi, zi, hi = x[i], y[i], 0.0, h[i]
         xxi, yyi, zzi, xyi = xx[i], yy[i], zz[i], xy[i]
         if z is not None:
             zi, yzi, zxi = zs[i], yz[i], zx[i]
         first = np.uint64(arrays.first[i])
         for k in range(np.uint64(arrays.count[i])):
             j = rows[first + k]
-            mean = 0.5 * (hi + h[j])
-            dx = xi - x[j]
-            dy = yi - y[j]
-            r2 = dx * dx + dy * dy
-            if z is not None:
-                dz = zi - zs[j]
-                r2 += dz * dz
-            slope = _slope(shape, r2, mean, dimension)
+            slope = _slope_to(j, xi, yi, zi, hi, shape, x, y, zs, h, dimension)
             slope *= -volume[j] if material[j] == m else 0.0
             level = _level(j, offset, source) if source is not None else np.uint64(j)
             gx = g0 * (xi - x[level])

@@ -9,6 +9,9 @@ import pytest
 from fem_meshes import bricks, group, held, loaded, moved, problem, ramp, solve
 
 from zrno.solvers import fem
+from zrno.solvers.errors import Diverged
+from zrno.solvers.fem.libraries import Singular
+from zrno.solvers.fem.linear import System
 from zrno.solvers.materials import Elastic, von_mises
 
 
@@ -117,3 +120,24 @@ def test_modified_newton_needs_more_iterations_for_the_same_answer() -> None:
         found.append((solver.shape.u, solver.iterations))
     np.testing.assert_allclose(found[1][0], found[0][0], rtol=0.0, atol=1e-8 * np.abs(found[0][0]).max())
     assert found[1][1] > found[0][1]
+
+
+@pytest.mark.parametrize("found", [True, False])
+def test_where_a_linear_system_has_no_digits_left_the_forces_judge_its_answer(
+    found: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """From the second iteration on, as flow that hardly resists has them; where there is no answer it is told."""
+    exact, calls, solved = _string(method="newton"), [0], System.solve
+
+    def few_digits(self: System, right: np.ndarray) -> np.ndarray:
+        calls[0] += 1
+        if calls[0] == 1:
+            return solved(self, right)
+        raise Singular(-1, "few digits", solved(self, right) if found else None)
+
+    monkeypatch.setattr(System, "solve", few_digits)
+    if found:
+        assert _string(method="newton") == exact
+    else:
+        with pytest.raises(Diverged, match="few digits"):
+            _string(method="newton")
