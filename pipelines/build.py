@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from zrno.pipelines import births, contact
 from zrno.pipelines.laws import initial_energy, law_of, soil_of
@@ -56,19 +58,21 @@ def particle_problem(
     assert particles is not None
     numbers = sorted(model.materials)
     chosen = Sph(cures="none") if original else method or Sph()
+    n = len(particles)
+    body = np.searchsorted(numbers, particles.material)
+    moving = np.bincount(body, particles.bc != HELD, minlength=len(numbers)) > 0.0
     bodies = [
         _body(model, model.materials[number], control.contact_laws[k] if control.contact else (0.0, 0.0), chosen)
         for k, number in enumerate(numbers)
     ]
+    bodies, cures = _with_correction(bodies, moving, control, chosen)
     bodies = contact.with_strengths(bodies, contact.law_of_contact(control, chosen))
     for warning in (contact.unused(control, chosen), births.unused(control)):
         if warning and warning not in model.warnings:
             model.warnings.append(warning)
-    sinks = any(b.bearing for b in bodies) and any(family(b.law) == "grain" for b in bodies)
-    if sinks and _cures(control, chosen).correction and SINKS not in model.warnings:
+    sinks = any(b.bearing for b in bodies) and any(family(b.law) == "grain" and b.corrected for b in bodies)
+    if sinks and cures.correction and SINKS not in model.warnings:
         model.warnings.append(SINKS)
-    n = len(particles)
-    body = np.searchsorted(numbers, particles.material)
     owned = np.bincount(body, minlength=len(numbers))
     per_material = [model.materials[i] for i in numbers]
 
@@ -108,7 +112,7 @@ def particle_problem(
         planes=_planes(control),
         traced=tuple(control.history_particles),
         transducers=_transducers(control, numbers),
-        cures=_cures(control, chosen),
+        cures=cures,
         local_steps=None if chosen.local_steps == "auto" else chosen.local_steps,
         sleep=chosen.sleep,
         birth=births.times(control, particles),
@@ -140,12 +144,22 @@ def _transducers(control: ParticleControl, numbers: list[int]) -> tuple[tuple[fl
     return tuple(found)
 
 
-def _cures(control: ParticleControl, method: Sph) -> Cures:
-    return Cures(
-        correction=bool(control.discretisation) if method.correction is None else method.correction,
+def _with_correction(
+    bodies: list[Body], moving: NDArray[np.bool_], control: ParticleControl, method: Sph
+) -> tuple[list[Body], Cures]:
+    """The cures, and which bodies the gradient correction applies to. moving: (bodies,) not all particles are held."""
+    said = True if control.discretisation and method.correction is None else method.correction
+    by_material = said is None and method.cures == "auto"
+    if by_material:
+        chosen = [defaults.correction(b.law) and bool(moves) for b, moves in zip(bodies, moving, strict=True)]
+        bodies = [replace(b, corrected=yes) for b, yes in zip(bodies, chosen, strict=True)]
+        said = any(yes and not b.lagrangian for b, yes in zip(bodies, chosen, strict=True))
+    cures = Cures(
+        correction=bool(said),
         artificial_stress=method.artificial_stress,
         xsph=(XSPH if control.velocity_option else 0.0) if method.xsph is None else method.xsph,
     )
+    return bodies, cures
 
 
 def _body(model: Model, material: Material, repulsion: tuple[float, float], method: Sph) -> Body:

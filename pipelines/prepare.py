@@ -40,7 +40,8 @@ class Prepared:
     made: what `convert` returns of each deck made.
 
     state: the checkpoint that the solver stands at, None at the start; started: when the deck had been read
-    (`time.perf_counter`); listing: whether a structure's steps are listed as text.
+    (`time.perf_counter`); compiled: seconds that the process had spent compiling by then; listing: whether a
+    structure's steps are listed as text.
     """
 
     scene: Scene | None
@@ -51,6 +52,7 @@ class Prepared:
     solver: Solver
     state: Mapping[str, Any] | None
     started: float
+    compiled: float
     listing: bool
 
 
@@ -67,6 +69,8 @@ def prepare(
 
     Raises InputError for bad input, ValueError for a checkpoint that does not fit.
     """
+    from zrno.solvers.jit import compile_seconds
+
     scene, decks = _decks(paths, chosen)
     paired = check_decks(decks)
     if scene is not None and scene.coupling is not None and len(decks) == 1:
@@ -88,7 +92,7 @@ def prepare(
                 places = command_options.apply(chosen.settings, model)
             models.append(model)
             digest[str(deck)] = next(iter(digests([draft.path if draft else deck]).values()))
-        started = time.perf_counter()
+        started, compiled = time.perf_counter(), compile_seconds()
         try:
             solver = _solver(models, decks, scene, chosen, places, threads)
         except ValueError as error:  # things that do not go together
@@ -105,7 +109,7 @@ def prepare(
             draft.publish()
         listed = models[-1].fem_control is not None and _of_structure(scene, chosen).listing
         made_of = [d.result for d in made]
-        return Prepared(scene, decks, digest, models, made_of, solver, state, started, listed)
+        return Prepared(scene, decks, digest, models, made_of, solver, state, started, compiled, listed)
 
 
 def _solver(

@@ -24,6 +24,14 @@ def stress_diffusion(law: Law) -> float:
     return STRESS_DIFFUSION if family(law) == "grain" and not cohesive(law) else 0.0
 
 
+def correction(law: Law) -> bool:
+    """Of one material whose particles move. Without it a solid that turns is strained at its free surfaces and swings
+    back, and the impact of two elastic cylinders needs six times finer particles (sample two_cylinders). Grain yields
+    instead, and a floor of particles repels it less with it; a fluid's surface is rough, and small steps would follow.
+    """
+    return family(law) == "solid"
+
+
 def least_density(law: Law, density: float) -> float | None:
     """Of one material; None: no limit. Opened grain is no bigger: its volume weighs in its neighbours' sums."""
     return density * (1.0 - OPEN) if getattr(law, "gaps", False) else None

@@ -25,7 +25,7 @@ from ..jit import kernel
 from ..threads import barrier, claim, share
 from . import across, packed, slip, step, walls
 from .nominal import nominal_stress
-from .particle import drift, each_law, half_work, kick
+from .particle import INSTANT, drift, each_law, half_work, kick
 from .problem import Problem
 from .state import Floats
 
@@ -149,7 +149,7 @@ def _reach_in_time(i0, i1, z, arrays):
 def _laws(i0, i1, z, laws, correction, density_rate, stress_rate, heat, wave, reference, dt, arrays, numbers):
     """Laws, nominal stress and volumes of a range; returns a particle that has turned inside out, or -1."""
     each_law(
-        laws, 0, i0, i1, z, max(dt, step.INSTANT), correction, density_rate, stress_rate, heat, wave, None, arrays,
+        laws, 0, i0, i1, z, max(dt, INSTANT), correction, density_rate, stress_rate, heat, wave, None, arrays,
         numbers,
     )  # fmt: skip
     torn = -1.0
@@ -214,7 +214,7 @@ def advance(
         if pending:
             from_chunk = 0 if begins else slow_chunks
             chunks = slow_chunks + fast_chunks
-            if last > 0.0 or not begins:
+            if last > 0.0 or not begins or correction is not None:  # see step.advance
                 packed.pack_motion(thread, threads, sync, 0 if begins else split, solid, h, None, plain, arrays)
                 c = from_chunk + claim(sync, thread, threads, chunks - from_chunk)
                 while c < chunks:

@@ -24,20 +24,23 @@ from .smoothing import inverse_root, shape_slope
 TINY = 1e-30  # keeps the inverse root of coincident particles finite
 WELL = 2e-3  # a shape matrix whose determinant is this small beside its mean eigenvalue's power is not inverted
 # 1/tr(inverse) of the shape matrix, below which less and less of the inverse is taken: whole at the corner of a solid
-# block (0.02 at least), and never more than a factor of 50. A grain that flies past two others far off has a small
+# block (0.06 at least by the cubic spline), and never more than a factor of 20. A grain that flies past two others far off has a small
 # matrix, well conditioned; its whole inverse multiplied velocities by thousands, and threw grain through the floor.
-SEEN = 0.02
+SEEN = 0.05
 
 
 @inlined_kernel
 def velocity_gradient(
-    i0, i1, first, count, rows, shape, packed, near, solid, h, inverse_h2, scale, line, gradient, correction
-):
+    i0, i1, first, count, rows, shape, packed, near, solid, h, inverse_h2, scale, line, gradient, correction, corrected,
+    material,
+):  # fmt: skip
     """grad v_i = sum_j V_j (v_j - v_i) (x) grad_i W_ij ([T] 4.6.1.13), of the packed motion. near: a buffer.
 
-    solid: None in the plane; h: None where all are equal. correction: None, or (6 | 3, n + 1) for the inverse B of
+    solid: None in the plane; h: None where all are equal. correction: None, or (7 | 4, n + 1) for the inverse B of
     the shape matrix sum_j V_j (x_j - x_i) (x) grad_i W_ij, which then makes the gradient exact for linear fields
-    (Randles & Libersky 1996): grad v B.
+    (Randles & Libersky 1996): grad v B; and in its last row |B sum_j V_j grad_i W_ij|^2, what a particle strains itself
+    by moving, which the critical step needs. corrected: (bodies,) 1, or 0 for those whose B is the unit matrix;
+    material: (n + 1,) the body of a particle.
     """
     x, y, z, u, v, w, volume, size = motion_of(near, solid)
     for i in range(i0, i1):
@@ -53,10 +56,13 @@ def velocity_gradient(
             wy = 0.0
             wz = 0.0
         if correction is not None:
+            gx_sum = 0.0
+            gy_sum = 0.0
             mxx = 0.0
             myy = 0.0
             mxy = 0.0
             if solid is not None:
+                gz_sum = 0.0
                 mzz = 0.0
                 myz = 0.0
                 mzx = 0.0
@@ -107,6 +113,8 @@ def velocity_gradient(
                 vx += dv * gx
                 vy += dv * gy
                 if correction is not None:
+                    gx_sum += gx
+                    gy_sum += gy
                     mxx -= dx * gx
                     myy -= dy * gy
                     mxy -= dx * gy
@@ -122,6 +130,7 @@ def velocity_gradient(
                     wy += dw * gy
                     wz += dw * gz
                     if correction is not None:
+                        gz_sum += gz
                         mzz -= dz * gz
         if correction is not None:
             if solid is not None:
@@ -139,7 +148,7 @@ def velocity_gradient(
                 if determinant > WELL * mean * mean * mean and mean > 0.0:
                     cyy = mxx * mzz - mzx * mzx
                     czz = mxx * myy - mxy * mxy
-                    part = min(1.0, determinant / (SEEN * (cxx + cyy + czz)))
+                    part = corrected[material[i]] * min(1.0, determinant / (SEEN * (cxx + cyy + czz)))
                     inverse = part / determinant
                     bxx = cxx * inverse + (1.0 - part)
                     bxy = cxy * inverse
@@ -153,6 +162,10 @@ def velocity_gradient(
                 correction[3, i] = bxy
                 correction[4, i] = byz
                 correction[5, i] = bzx
+                ox = gx_sum * bxx + gy_sum * bxy + gz_sum * bzx
+                oy = gx_sum * bxy + gy_sum * byy + gz_sum * byz
+                oz = gx_sum * bzx + gy_sum * byz + gz_sum * bzz
+                correction[6, i] = corrected[material[i]] * (ox * ox + oy * oy + oz * oz)
                 ux, uy, uz = (
                     ux * bxx + uy * bxy + uz * bzx, ux * bxy + uy * byy + uz * byz, ux * bzx + uy * byz + uz * bzz
                 )  # fmt: skip
@@ -171,7 +184,7 @@ def velocity_gradient(
                 byy = 1.0
                 bxy = 0.0
                 if determinant > WELL * mean * mean and mean > 0.0:
-                    part = min(1.0, determinant / (SEEN * 2.0 * mean))
+                    part = corrected[material[i]] * min(1.0, determinant / (SEEN * 2.0 * mean))
                     inverse = part / determinant
                     bxx = myy * inverse + (1.0 - part)
                     byy = mxx * inverse + (1.0 - part)
@@ -179,6 +192,9 @@ def velocity_gradient(
                 correction[0, i] = bxx
                 correction[1, i] = byy
                 correction[2, i] = bxy
+                ox = gx_sum * bxx + gy_sum * bxy
+                oy = gx_sum * bxy + gy_sum * byy
+                correction[3, i] = corrected[material[i]] * (ox * ox + oy * oy)
                 ux, uy = ux * bxx + uy * bxy, ux * bxy + uy * byy
                 vx, vy = vx * bxx + vy * bxy, vx * bxy + vy * byy
         if solid is not None:

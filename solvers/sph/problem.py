@@ -29,7 +29,7 @@ class Body:
     contact; alpha, beta: of Monaghan's pair viscosity [-]; density_diffusion: delta-SPH for fluids (0.1);
     stress_diffusion: regularised stress of grain (0.1). lagrangian: the total-Lagrangian formulation, for a body that
     stays whole; hourglass: the share of Young's modulus that resists hourglass modes, 0 .. 1. bearing: held particles
-    that bear their neighbours' stress.
+    that bear their neighbours' stress. corrected: the gradient correction, where a run has it, applies.
     """
 
     number: int
@@ -49,6 +49,7 @@ class Body:
     lagrangian: bool = False
     hourglass: float = 0.8
     bearing: bool = False
+    corrected: bool = True
 
 
 @dataclass(frozen=True, slots=True)

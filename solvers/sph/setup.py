@@ -115,6 +115,7 @@ def numbers_of(p: Problem, contact: Contact, shape: Shape, *, mirrors: bool) -> 
         least_distance=IMAGE if mirrors else 0.0,
         wall=np.array([b.density if b.bearing else 0.0 for b in p.bodies]),
         kinematic_viscosity=np.array([getattr(b.law, "viscosity", 0.0) / b.density for b in p.bodies]),
+        corrected=np.array([float(b.corrected) for b in p.bodies]),
         inverse_w=1.0 / at_spacing if at_spacing > 0.0 else 0.0,
         step_option=p.step_option,
         step_factor=p.step_factor,
@@ -160,11 +161,17 @@ def fill(s: State, p: Problem, numbers: Numbers, has: Rows, shape: Shape) -> Non
         s.rows("birth")[0, :n] = p.birth
     if has.wave:
         s.rows("wave")[0, :n] = numbers.wave[p.body]
-    if has.correction:  # the unit matrix: the first sums of forces come before the first strain
+    if has.correction:  # the unit matrix, for particles that are not yet there
         s.rows("correction")[: s.d] = 1.0
     radius = shape.support * float(p.h.max())
     span = max(float(np.ptp(p.x, axis=0).max()), radius)
     s.place_dummy(float(np.abs(p.x).max()) + FAR * radius + span)
+
+
+def _of_some(p: Problem) -> str:
+    """The names of the bodies whose gradients are corrected, where not all are."""
+    named = [b.name for b in p.bodies if b.corrected and not b.lagrangian]
+    return "" if all(b.corrected for b in p.bodies) else f" of {', '.join(named)}"
 
 
 def described(p: Problem, contact: Contact, cures: Cures, has: Rows, threads: int) -> str:
@@ -172,7 +179,7 @@ def described(p: Problem, contact: Contact, cures: Cures, has: Rows, threads: in
     laws = ", ".join(dict.fromkeys(type(b.law).__name__ for b in p.bodies))
     beyond = {
         "total-Lagrangian: " + ", ".join(b.name for b in p.bodies if b.lagrangian): has.lagrangian,
-        "gradient correction": cures.correction,
+        "gradient correction" + _of_some(p): cures.correction,
         f"artificial stress {cures.artificial_stress:g}": has.artificial,
         "density diffusion": has.density_rate,
         "stress diffusion": has.stress_rate,

@@ -246,8 +246,10 @@ class Solver:
         h_max = float(s.rows("h_list" if self._has.changing_h else "h")[0, :n].max())
         radius = h_max * self._shape.support
         if self._reference is not None:
-            self._face(n)
             self._relist(radius)
+            if self._contact.surface is not None:  # bodies alone need no new list of themselves, but facets are near
+                self._spare = min(self._spare, 0.5 * self._skin)
+            self._face(n)
             return
         rows = s.rows("x_list")
         cells = Cells(n, rows[0], rows[1], rows[2] if s.d == 3 else None, radius + self._skin)

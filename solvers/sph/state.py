@@ -131,7 +131,7 @@ class Numbers(NamedTuple):
     body_times (k,), body_values (k, 3). h_option: as the deck's. relaxation: factor of the velocities in each step.
     pair_viscosity: (bodies, 2) alpha and beta; density_diffusion, stress_diffusion: (bodies,)
     factors; wall: (bodies,) the density of one that is a wall, else 0; kinematic_viscosity:
-    (bodies,) of fluids, else 0; inverse_w: 1/W at the particles' spacing;
+    (bodies,) of fluids, else 0; corrected: (bodies,) 1 where the gradient correction applies, else 0; inverse_w: 1/W at the particles' spacing;
     held_limits: whether held particles limit the step too;
     least_distance: in h, that counts for the step: an image comes as near to its particle as that to the plane.
     """
@@ -153,6 +153,7 @@ class Numbers(NamedTuple):
     stress_diffusion: Any
     wall: Any
     kinematic_viscosity: Any
+    corrected: Any
     inverse_w: float
     held_limits: bool
     least_distance: float
@@ -252,7 +253,7 @@ class State:
             "interface": int(has.interface), "relaxed": int(has.relaxed),
             "state": has.state,
             "gradient": d * d, "s": (d * d if has.correction or has.hoop else 6 if solid else 3), "nearest": 1,
-            "c": d if has.contact else 0, "correction": (6 if solid else 3) if has.correction else 0,
+            "c": d if has.contact else 0, "correction": (7 if solid else 4) if has.correction else 0,
             "density_rate": int(has.density_rate), "stress_rate": six if has.stress_rate else 0,
             "smoothed": d if has.xsph else 0, "colour": d * has.normals, "mobilised": d * has.slip,
             "nominal": d * d if has.lagrangian else 0, "hoop": int(has.hoop), "thrust": d * has.driven,

@@ -20,7 +20,7 @@ from ..threads import barrier, claim, share
 from . import across, bearing, cures, driving, facing, ghosts, lagrangian, nominal, pairs, rest, rings, slip, walls
 from .momentum import momentum
 from .packed import pack_forces, pack_motion
-from .particle import critical_step, drift, each_law, half_work, kick
+from .particle import INSTANT, critical_step, drift, each_law, half_work, kick
 
 # entries of `progress`, the loop's own memory
 TIME, LAST, NEXT, STEPS, PENDING, FIRST, BAD = range(7)
@@ -33,7 +33,6 @@ CHUNK = 128  # particles that a thread takes on at a time
 
 LANDING = 8  # so many steps before a wanted time the step is trimmed to meet it
 GROWTH = 1.1  # a step grows by no more than this
-INSTANT = 1e-300  # a duration that divides no strain rate by zero
 TOWARDS = 0.5  # of its distance from the axis a particle may go in a critical step
 COLLAPSE = 1e-7  # a step this small beside the first one will not recover
 
@@ -51,6 +50,7 @@ def strain(
         pairs.velocity_gradient(
             i0, i1, arrays.first, arrays.count, arrays.rows, shape, arrays.packed, near[0], solid, h,
             numbers.inverse_h2, numbers.scale, line, arrays.gradient, correction,
+            numbers.corrected, arrays.material,
         )  # fmt: skip
     if hoop is not None:
         rings.radial_strain(i0, i1, arrays)
@@ -134,7 +134,7 @@ def force(
         least = np.inf
     if hoop is not None:
         least = min(least, rings.closest(i0, i1, TOWARDS, arrays))
-    return min(longest, least, critical_step(i0, i1, z, wave, numbers, arrays))
+    return min(longest, least, critical_step(i0, i1, z, wave, correction, numbers, arrays))
 
 
 @kernel
@@ -180,7 +180,7 @@ def advance(
     barrier(sync, threads)  # all have read what the first will write
     while True:
         if pending:
-            if last > 0.0:
+            if last > 0.0 or correction is not None:  # whose first forces need the matrix
                 if image_source is not None:
                     g0, g1 = share(len(image_source), thread, threads)
                     ghosts.follow_motion(g0, g1, offset, z, image_source, image_sign, image_shift, arrays)
@@ -263,7 +263,7 @@ def advance(
                 a, b = rest.run_of(at, end, resting, most, arrays.still)
                 while a < b:
                     if resting is not None:  # the deep are to wake into a stable step
-                        least = min(least, critical_step(at, a, z, wave, numbers, arrays))
+                        least = min(least, critical_step(at, a, z, wave, correction, numbers, arrays))
                         if faces is not None:  # and weigh on what they lie on
                             facing.add_impulse(at, a, 0.5 * last, faces)
                         at = b
@@ -275,7 +275,7 @@ def advance(
                     least = min(least, part)
                     a, b = rest.run_of(b, end, resting, most, arrays.still)
                 if resting is not None:
-                    least = min(least, critical_step(at, end, z, wave, numbers, arrays))
+                    least = min(least, critical_step(at, end, z, wave, correction, numbers, arrays))
                     if faces is not None:
                         facing.add_impulse(at, end, 0.5 * last, faces)
                 c = claim(sync, thread, threads, chunks)

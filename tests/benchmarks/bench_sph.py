@@ -82,7 +82,7 @@ def phases(problem: Problem, builds: float) -> dict[str, float]:
         "velocity gradient": nanoseconds(
             lambda: pairs.velocity_gradient(
                 0, n, a.first, a.count, a.rows, s._shape, a.packed, a.near[0, 0], True, None, k.inverse_h2,
-                k.scale, None, a.gradient, None,
+                k.scale, None, a.gradient, None, k.corrected, a.material,
             ), n),
         "momentum": nanoseconds(
             lambda: momentum.momentum(

@@ -138,11 +138,14 @@ def test_what_the_control_cards_ask_for_reaches_the_solver(tmp_path: Path) -> No
 
 def test_the_method_beyond_the_deck_is_by_material_or_as_it_is_said(tmp_path: Path) -> None:
     model = _read(tmp_path)
-    assert particle_problem(model, "deck.mcm").cures == Cures()
-    asked = Sph(artificial_stress=0.3)
+    assert particle_problem(model, "deck.mcm").cures == Cures(correction=True)
+    assert particle_problem(model, "deck.mcm", method=Sph(cures="none")).cures == Cures()
+    asked = Sph(artificial_stress=0.3, correction=False)
     assert particle_problem(model, "deck.mcm", method=asked).cures == Cures(artificial_stress=0.3)
     assert particle_problem(model, "deck.mcm", method=asked, original=True).cures == Cures()
     grain = _read(tmp_path, ("    1    3       2.7", "    1    4       2.7"), CAP)
+    assert not particle_problem(grain, "deck.mcm").cures.correction
+    assert particle_problem(grain, "deck.mcm", method=Sph(correction=True)).cures.correction
     assert particle_problem(grain, "deck.mcm").bodies[0].stress_diffusion == 0.0  # it has cohesion: k above gamma
     grain.materials[1].parameters["gamma"] = grain.materials[1].parameters["alpha"]
     assert particle_problem(grain, "deck.mcm").bodies[0].stress_diffusion == 0.1

@@ -176,7 +176,7 @@ def test_held_steel_limits_the_step_only_by_its_stress(kind: str) -> None:
     setup.fill(state, p, numbers, rows, shape_of(p.kernel, 2))
     state.rows("nearest")[:] = SPACING**2
     arrays = state.arrays(NeighbourList(n), NeighbourList(n), np.zeros((1, 8)))
-    assert critical_step(0, n, None, None, numbers, arrays) == pytest.approx(SPACING / speed, rel=1e-12)
+    assert critical_step(0, n, None, None, None, numbers, arrays) == pytest.approx(SPACING / speed, rel=1e-12)
 
 
 @pytest.mark.slow
