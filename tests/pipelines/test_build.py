@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 
 import pytest
@@ -159,6 +160,24 @@ def test_the_method_beyond_the_deck_is_by_material_or_as_it_is_said(tmp_path: Pa
     assert (problem.bodies[0].alpha, problem.bodies[0].stress_diffusion) == (0.4, 0.2)
     assert problem.body_curve is not None
     assert problem.body_curve[1][1].tolist() == [0.0, -9.81, 0.0]
+
+
+def test_the_gradient_correction_is_of_the_solids_that_move(tmp_path: Path) -> None:
+    """Grain beside them has none; where nothing that moves is solid, or all that is stays whole, the run has none."""
+    model = _read(tmp_path)
+    model.materials[2] = dataclasses.replace(model.materials[1], id=2, name="sand", law="elastic")
+    assert model.particles is not None
+    model.particles.material[1:] = 2
+    soil = of_options({"sph.laws": {"sand": {"law": "drucker_prager_soil", "c": 0, "phi": 30}}})
+    problem = particle_problem(model, "deck.mcm", method=soil)
+    assert [b.corrected for b in problem.bodies] == [True, False]
+    assert problem.cures.correction
+    whole = dataclasses.replace(soil, total_lagrangian=[model.materials[1].name])
+    assert not particle_problem(model, "deck.mcm", method=whole).cures.correction
+    everywhere = dataclasses.replace(soil, correction=True)
+    assert all(b.corrected for b in particle_problem(model, "deck.mcm", method=everywhere).bodies)
+    model.particles.bc[:1] = 7
+    assert not particle_problem(model, "deck.mcm", method=soil).cures.correction
 
 
 CONTACT = (("    0    2    0    0", "    1    2    0    0"), ("", "   -1    0\n      10.0       2.0\n"))

@@ -228,3 +228,22 @@ def test_an_impact_of_disordered_bodies_keeps_its_invariants(speed: float, cures
     solver = finished(dataclasses.replace(problem, x=np.concatenate([a, b])), 2.0)
     assert abs(solver.history()["momentum_x"]) < 1e-12 * 0.36 * speed
     assert solver.energy_report()["balance_error"] < 0.02
+
+
+@pytest.mark.parametrize("viscosity", [(0.06, 1.5), (0.5, 2.0)], ids=["default", "of the original's decks"])
+def test_the_tips_of_a_corrected_heap_limit_the_step(viscosity: tuple[float, float]) -> None:
+    """Two halves of a flat heap run into each other; its tips see few others, from one side, and are stiff by the
+    correction: with a step for the lattice alone the run breaks within 20 steps. The first step is limited too."""
+    x = np.array([
+        (0.1 * i, 0.0567 * (row + 0.5), 0.0)
+        for row in range(6) for i in range(-6, 7) if abs(i) <= 6.6 - 1.32 * row + 1e-9
+    ])  # fmt: skip
+    v = np.zeros_like(x)
+    v[:, 1] = -0.035 * np.sign(x[:, 1] - x[:, 1].mean())
+    linear, quadratic = viscosity
+    heap = one_body(
+        x, v, law=Elastic.from_engineering(1.0, 0.377), body={"linear": linear, "quadratic": quadratic},
+        cures=Cures(correction=True),
+    )  # fmt: skip
+    solver = finished(dataclasses.replace(heap, mass=0.567 * heap.mass), 1.5)
+    assert solver.energy_report()["balance_error"] < 0.01

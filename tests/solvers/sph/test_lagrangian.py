@@ -19,6 +19,7 @@ from zrno.solvers.materials import Elastic, sound_speed, von_mises
 from zrno.solvers.sph import Body, Problem, Solver, lagrangian, particle
 from zrno.solvers.sph.ghosts import LIMIT, SYMMETRY, Plane
 from zrno.solvers.sph.nominal import KAPPA, PSI, nominal_stress
+from zrno.solvers.sph.surface import Facets
 
 ELASTIC = Elastic.from_engineering(1.0, 0.3)
 BULK = ELASTIC.lame + 2.0 / 3.0 * ELASTIC.shear
@@ -546,3 +547,16 @@ def test_energy_of_the_hourglass_modes_is_that_of_their_force() -> None:
     assert stored > 0.0
     assert work == pytest.approx(-stored, rel=1e-9)
     assert -s._state.rows("artificial_work")[0, :n].sum() == pytest.approx(stored, rel=1e-9)
+
+
+def test_a_body_that_stays_whole_meets_facets_that_were_far_away_at_the_start() -> None:
+    """Its own neighbours need no new list, the facets near it do: it flew through them. It rebounds with its energy."""
+    ends = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]])
+    floor = Facets(ends, np.array([[0, 1]]), np.zeros(1), np.zeros(1, bool))
+    p = block((4, 4), v=np.tile([0.0, -0.02, 0.0], (16, 1)), facets=floor)
+    solver = Solver(dataclasses.replace(p, x=p.x + [-0.2, 0.5, 0.0]), threads=1)
+    solver.advance(60.0, 10**6)
+    found = solver.frame().particles
+    assert found["position"][:, 1].min() > 0.1
+    assert 0.7 * 0.02 < found["velocity"][:, 1].mean() <= 0.02
+    assert solver.energy_report()["balance_error"] < 0.01
