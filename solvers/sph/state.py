@@ -131,7 +131,8 @@ class Numbers(NamedTuple):
     body_times (k,), body_values (k, 3). h_option: as the deck's. relaxation: factor of the velocities in each step.
     pair_viscosity: (bodies, 2) alpha and beta; density_diffusion, stress_diffusion: (bodies,)
     factors; wall: (bodies,) the density of one that is a wall, else 0; kinematic_viscosity:
-    (bodies,) of fluids, else 0; corrected: (bodies,) 1 where the gradient correction applies, else 0; inverse_w: 1/W at the particles' spacing;
+    (bodies,) of fluids, else 0; corrected: (bodies,) 1 where the gradient correction applies, else 0;
+    inverse_w: 1/W at the particles' spacing;
     held_limits: whether held particles limit the step too;
     least_distance: in h, that counts for the step: an image comes as near to its particle as that to the plane.
     """

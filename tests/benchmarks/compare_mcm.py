@@ -17,6 +17,7 @@ from unittest.mock import patch
 import numpy as np
 
 from zrno.pipelines.build import particle_problem
+from zrno.pipelines.method import Sph
 from zrno.solvers.sph import Problem, Solver, setup
 from zrno.solvers.sph import solver as solver_module
 from zrno.translators import read
@@ -92,14 +93,16 @@ def main(folder: Path) -> None:
     for name in ("block20k", "kupa1f", "newhop3f"):
         deck = folder / f"{name}.mcm"
         reference = dict(np.load(deck.with_suffix(".npz")))
-        for said, kind, original, weak in (
-            ("compat=original", Solver, True, False),
-            ("proper start", ProperStart, True, False),
-            ("  and full rotation", OneDensity, False, True),
-            ("  and sums for two densities", Solver, False, True),
-            ("  and the whole contact: default", Solver, False, False),
+        plain = Sph(correction=False)
+        for said, kind, original, weak, method in (
+            ("compat=original", Solver, True, False, plain),
+            ("proper start", ProperStart, True, False, plain),
+            ("  and full rotation", OneDensity, False, True, plain),
+            ("  and sums for two densities", Solver, False, True, plain),
+            ("  and the whole contact", Solver, False, False, plain),
+            ("  and gradient correction: default", Solver, False, False, Sph()),
         ):
-            problem = particle_problem(read(deck), str(deck), original=original)
+            problem = particle_problem(read(deck), str(deck), original=original, method=method)
             if weak:  # with one h and n the original's divisor makes f four times smaller
                 bodies = tuple(replace(b, strength=b.strength * 0.25**b.exponent) for b in problem.bodies)
                 problem = replace(problem, bodies=bodies)

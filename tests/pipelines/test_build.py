@@ -172,9 +172,9 @@ def test_the_gradient_correction_is_of_the_solids_that_move(tmp_path: Path) -> N
     problem = particle_problem(model, "deck.mcm", method=soil)
     assert [b.corrected for b in problem.bodies] == [True, False]
     assert problem.cures.correction
-    whole = dataclasses.replace(soil, total_lagrangian=[model.materials[1].name])
+    whole = soil.model_copy(update={"total_lagrangian": [model.materials[1].name]})
     assert not particle_problem(model, "deck.mcm", method=whole).cures.correction
-    everywhere = dataclasses.replace(soil, correction=True)
+    everywhere = soil.model_copy(update={"correction": True})
     assert all(b.corrected for b in particle_problem(model, "deck.mcm", method=everywhere).bodies)
     model.particles.bc[:1] = 7
     assert not particle_problem(model, "deck.mcm", method=soil).cures.correction

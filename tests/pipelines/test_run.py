@@ -296,9 +296,8 @@ def test_results_do_not_depend_on_threads(tmp_path: Path) -> None:
 
 def test_an_unstable_run_that_does_not_explode_is_a_warning(tmp_path: Path) -> None:
     source = deck(tmp_path / "impact.mcm", end_time=6.0, every=6.0)
-    done = zrno(
-        tmp_path, "run", source.name, "-o", "out", "--set", "step_factor=2.8", "--set", "sph.correction=false", "--json"
-    )
+    how = ("run", source.name, "-o", "out", "--set", "step_factor=2.8", "--set", "sph.correction=false")
+    done = zrno(tmp_path, *how, "--json")
     assert done.returncode == 0
     result = json.loads(done.stdout)
     (warning,) = result["warnings"]
@@ -315,9 +314,7 @@ def test_an_unstable_run_that_does_not_explode_is_a_warning(tmp_path: Path) -> N
     assert error[-1] == pytest.approx(result["energy"]["balance_error"])
     assert f"passed 5% at t = {history['time'][np.flatnonzero(error <= 0.05)[-1] + 1]:.4g}:" in warning
 
-    quiet = zrno(
-        tmp_path, "run", source.name, "-o", "out", "--set", "step_factor=2.8", "--set", "sph.correction=false", "-q"
-    )
+    quiet = zrno(tmp_path, *how, "-q")
     assert (quiet.returncode, quiet.stderr) == (0, "")
     stable = run([source], output=tmp_path / "out")
     assert stable["warnings"] == []

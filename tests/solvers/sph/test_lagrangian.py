@@ -554,7 +554,7 @@ def test_a_body_that_stays_whole_meets_facets_that_were_far_away_at_the_start() 
     ends = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]])
     floor = Facets(ends, np.array([[0, 1]]), np.zeros(1), np.zeros(1, bool))
     p = block((4, 4), v=np.tile([0.0, -0.02, 0.0], (16, 1)), facets=floor)
-    solver = Solver(dataclasses.replace(p, x=p.x + [-0.2, 0.5, 0.0]), threads=1)
+    solver = Solver(dataclasses.replace(p, x=p.x + np.array([-0.2, 0.5, 0.0])), threads=1)
     solver.advance(60.0, 10**6)
     found = solver.frame().particles
     assert found["position"][:, 1].min() > 0.1
