@@ -24,10 +24,10 @@ from .smoothing import inverse_root, shape_slope
 TINY = 1e-30  # keeps the inverse root of coincident particles finite
 WELL = 2e-3  # a shape matrix whose determinant is this small beside its mean eigenvalue's power is not inverted
 # 1/tr(inverse) of the shape matrix, below which less and less of the inverse is taken: whole at the corner of a solid
-# block (0.06 at least by the cubic spline), and never more than a factor of 20. A grain that flies past two others far
-# off has a small matrix, well conditioned; its whole inverse multiplied velocities by thousands, and threw grain
-# through the floor.
-SEEN = 0.05
+# block (0.05 at least by the cubic spline, shaken by a quarter), and never more than a factor of 25. A grain that flies
+# past two others far off has a small matrix, well conditioned; its whole inverse multiplied velocities by thousands,
+# and threw grain through the floor.
+SEEN = 0.04
 
 
 @inlined_kernel

@@ -341,7 +341,7 @@ def drift(i0, i1, z, smoothed, h_start, h_list, mirrors, half_support, dt, array
     return largest, float(bad)
 
 
-OWN_FREQUENCY = 2.0  # largest frequency of corrected particles by what each strains itself: 1.2 to 2.0 found
+OWN_FREQUENCY = 2.3  # largest frequency of corrected particles by what each strains itself: 1.2 to 2.15 found
 DIFFUSION = 0.125  # of h^2 / nu: what viscosity may spread in a step (Morris, Fox & Zhu 1997)
 
 
