@@ -134,6 +134,12 @@ def place_images(p: Problem, s: State, shape: Any) -> ghosts.Images:
                 f"beyond it, the first is particle {s.id[beyond[0]]}: a body that stays whole begins half a spacing "
                 "from it"
             )
+        reach = shape.support * float(p.h.max())
+        if depth.min() > 0.5 * reach:
+            raise ValueError(
+                f"no particle is near the symmetry plane {'xyz'[plane.axis]} = {plane.position:g}: a body that stays "
+                "whole stands on its planes from the start; what it is to meet later is a wall (sph.walls)"
+            )
     s.rows("x_list")[:] = s.rows("x_start")
     found = ghosts.place_images(s, p.planes, s.n, shape.support * float(p.h.max()))
     at = slice(s.n, s.n + len(found))

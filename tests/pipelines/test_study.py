@@ -293,4 +293,4 @@ def test_the_command(folder: Path, capsys: pytest.CaptureFixture[str], monkeypat
 def test_a_study_is_part_of_the_scene(folder: Path) -> None:
     loaded = scene.load(folder / "study.yaml").study
     assert loaded is not None
-    assert len(loaded.combinations()) == 12
+    assert len(loaded.combinations()) == 32

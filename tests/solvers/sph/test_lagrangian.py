@@ -515,6 +515,7 @@ def test_a_body_in_a_corner_goes_on_bit_for_bit() -> None:
             "of several bodies",
         ),
         ({"planes": (dataclasses.replace(PLANE, position=0.05),)}, "6 particle.s. lie on the symmetry plane x = 0.05"),
+        ({"planes": (dataclasses.replace(PLANE, position=-1.0),)}, "no particle is near the symmetry plane x = -1"),
         ({"original": True}, "original"),
         ({"bodies": (BODY, BODY), "body": np.arange(36) // 18}, "kernel contact"),
         ({"bodies": (dataclasses.replace(BODY, law=Elastic(1.0, 0.0)),)}, "shear"),
