@@ -13,17 +13,6 @@ from .pairs import TINY
 from .smoothing import inverse_root, shape_slope, shape_value
 
 
-@kernel
-def _volume_factor(mean, dimension):
-    """1/h^d."""
-    inverse = 1.0 / mean
-    if dimension == 1:
-        return inverse
-    if dimension == 2:
-        return inverse * inverse
-    return inverse * inverse * inverse
-
-
 @inlined_kernel
 def _slope(shape, r2, mean, dimension):
     """(dW/dr)/r / a_d of a pair; one division, which with eight lanes costs as much as ten products."""
@@ -37,6 +26,19 @@ def _slope(shape, r2, mean, dimension):
     if dimension > 2:
         factor *= inverse
     return factor * shape_slope(shape, q2 * iq, iq)
+
+
+@inlined_kernel
+def _value(shape, r2, mean, dimension):
+    """W / a_d of a pair."""
+    inverse = 1.0 / mean
+    q2 = r2 * inverse * inverse + TINY
+    factor = inverse
+    if dimension > 1:
+        factor *= inverse
+    if dimension > 2:
+        factor *= inverse
+    return factor * shape_value(shape, q2 * inverse_root(q2))
 
 
 @inlined_kernel
@@ -173,31 +175,36 @@ def stress_diffusion(i0, i1, offset, source, z, shape, x, y, zs, arrays, numbers
 @kernel
 def smoothed_velocity(i0, i1, z, shape, factor, arrays, numbers, mean_velocity):
     """v_i + factor sum_j 2 m_j/(rho_i + rho_j) (v_j - v_i) W_ij: XSPH (Monaghan 1989), with which particles move."""
+    x, y, u, v, h, rows = arrays.x, arrays.y, arrays.u, arrays.v, arrays.h, arrays.rows
+    mass, density, dimension = arrays.mass, arrays.density, numbers.dimension
+    if z is not None:
+        w = arrays.w
+    scale = 2.0 * factor * numbers.normal
     for i in range(i0, i1):
         a0 = 0.0
         a1 = 0.0
         a2 = 0.0
-        for k in range(arrays.first[i], arrays.first[i] + arrays.count[i]):
-            j = arrays.rows[k]
-            mean = 0.5 * (arrays.h[i] + arrays.h[j])
-            dx = arrays.x[i] - arrays.x[j]
-            dy = arrays.y[i] - arrays.y[j]
+        xi, yi, ui, vi, hi, rho = x[i], y[i], u[i], v[i], h[i], density[i]
+        if z is not None:
+            zi, wi = z[i], w[i]
+        first = np.uint64(arrays.first[i])
+        for k in range(np.uint64(arrays.count[i])):
+            j = rows[first + k]
+            dx = xi - x[j]
+            dy = yi - y[j]
             r2 = dx * dx + dy * dy
             if z is not None:
-                dz = z[i] - z[j]
+                dz = zi - z[j]
                 r2 += dz * dz
-            q2 = r2 / (mean * mean) + TINY
-            value = shape_value(shape, q2 * inverse_root(q2)) * _volume_factor(mean, numbers.dimension)
-            value *= 2.0 * arrays.mass[j] / (arrays.density[i] + arrays.density[j])
-            a0 += value * (arrays.u[j] - arrays.u[i])
-            a1 += value * (arrays.v[j] - arrays.v[i])
+            value = mass[j] / (rho + density[j]) * _value(shape, r2, 0.5 * (hi + h[j]), dimension)
+            a0 += value * (u[j] - ui)
+            a1 += value * (v[j] - vi)
             if z is not None:
-                a2 += value * (arrays.w[j] - arrays.w[i])
-        scale = factor * numbers.normal
-        mean_velocity[0, i] = arrays.u[i] + scale * a0
-        mean_velocity[1, i] = arrays.v[i] + scale * a1
+                a2 += value * (w[j] - wi)
+        mean_velocity[0, i] = ui + scale * a0
+        mean_velocity[1, i] = vi + scale * a1
         if z is not None:
-            mean_velocity[2, i] = arrays.w[i] + scale * a2
+            mean_velocity[2, i] = wi + scale * a2
 
 
 @kernel

@@ -31,6 +31,7 @@ from zrno.solvers.sph import Body, Cures, Problem, Solver
 
 CURES = {
     "plain": Cures(),
+    "correction": Cures(correction=True),
     "artificial stress and correction": Cures(artificial_stress=0.3, correction=True),
 }
 

@@ -12,7 +12,9 @@ from sph_scenes import ELASTIC, finished, impact, jittered, lattice, one_body, p
 
 from zrno.solvers.materials import Elastic
 from zrno.solvers.sph import Cures, Plane, Problem, Solver, bearing, packed, pairs, particle
+from zrno.solvers.sph.cures import smoothed_velocity
 from zrno.solvers.sph.ghosts import SYMMETRY
+from zrno.solvers.sph.smoothing import value_at
 from zrno.solvers.sph.step import INSTANT
 from zrno.solvers.threads import meeting
 
@@ -329,6 +331,31 @@ def test_smoothed_velocities_move_particles_and_conserve_momentum() -> None:
         moved.append(float(np.abs(p["displacement"][:, 0]).max()))
         assert abs(solver.history()["momentum_x"]) < 1e-18
     assert moved[1] < 0.75 * moved[0]
+
+
+@pytest.mark.parametrize("shape", [(7, 6), pytest.param((4, 4, 4), marks=pytest.mark.slow)])
+def test_smoothed_velocities_are_the_sum_pair_by_pair(shape: tuple[int, ...]) -> None:
+    """Own smoothing lengths, densities and masses."""
+    d, x = len(shape), jittered(shape, 0.2)
+    n, noise = len(x), np.random.default_rng(5)
+    v = noise.normal(size=(n, 3)) * (np.arange(3) < d)
+    problem = one_body(
+        x, v, dimension=d, h=noise.uniform(0.11, 0.13, n), density=noise.uniform(0.9, 1.1, n),
+        mass=noise.uniform(0.5, 1.0, n), cures=Cures(xsph=0.4),
+    )  # fmt: skip
+    solver = Solver(problem, threads=1)
+    a, shape_of_kernel = solver._arrays(), solver._shape
+    found = np.zeros((d, a.x.shape[0]))
+    smoothed_velocity(0, n, a.z if d == 3 else None, shape_of_kernel, 0.4, a, solver._numbers, found)
+    place = np.stack([a.x, a.y, a.z][:d])[:, :n]
+    motion = np.stack([a.u, a.v, a.w][:d])[:, :n]
+    for i in range(n):
+        h = 0.5 * (a.h[i] + a.h[:n])
+        q = np.linalg.norm(place - place[:, i : i + 1], axis=0) / h
+        w = np.array([value_at(shape_of_kernel, max(one, 1e-15)) for one in q]) * solver._numbers.normal / h**d
+        weight = 2.0 * a.mass[:n] / (a.density[i] + a.density[:n]) * w
+        wanted = motion[:, i] + 0.4 * (weight * (motion - motion[:, i : i + 1])).sum(axis=1)
+        assert found[:, i] == pytest.approx(wanted, rel=0.0, abs=1e-12 * np.abs(wanted).max())
 
 
 def test_pair_viscosity_dissipates_what_motion_loses() -> None:
