@@ -42,7 +42,8 @@ class Rebound(NamedTuple):
 class Hooke:
     """d sigma/dt = W sigma - sigma W + lambda tr D I + 2 G D, half of D before the turn and half after it.
 
-    The step's velocity gradient is taken at its middle, so that a rotation turns the stress by its very angle."""
+    The step's velocity gradient is taken at its middle, so that a rotation turns the stress by its very angle.
+    """
 
     def __init__(self, points: tuple[int, ...]) -> None:
         self.xx, self.yy, self.xy = np.zeros((3, *points))
@@ -96,10 +97,10 @@ def _gathered(b: Floats, cells: int) -> Floats:
     """Sums at the nodes of what the elements have at their corners: `_corners` transposed."""
     four = b.reshape(*b.shape[:-1], cells, -1)
     out = np.zeros((*b.shape[:-2], cells + 1, four.shape[-1] + 1))
-    for k, (along, round_it) in enumerate(CORNERS):
-        out[..., (along > 0) : cells + (along > 0), :][..., (round_it > 0) : out.shape[-1] - (round_it < 0)] += four[
-            ..., k, :, :
-        ]
+    out[..., :-1, :-1] += four[..., 0, :, :]
+    out[..., 1:, :-1] += four[..., 1, :, :]
+    out[..., 1:, 1:] += four[..., 2, :, :]
+    out[..., :-1, 1:] += four[..., 3, :, :]
     return out
 
 
