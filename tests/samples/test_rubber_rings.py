@@ -132,3 +132,4 @@ def test_artificial_stress_by_the_recipe_of_the_literature_holds_the_rings_toget
     assert restitution(clouds[-1], clouds[0], axis="x", material=1, against=2) == pytest.approx(0.751, rel=0.02)
     assert said["energy"]["balance_error"] < 0.002
     assert 0.2 < history["dissipated"][-1] / history["kinetic"][0] < 0.3
+    assert np.abs(history["artificial_energy"]).max() < 0.05 * history["kinetic"][0]  # what the stress has made
