@@ -115,7 +115,7 @@ def test_the_scene_rebounds_as_finite_elements_do(folder: Path, speed: float) ->
 @pytest.mark.slow
 @pytest.mark.parametrize(("speed", "error"), [(0.06, 0.01), (0.08, 0.01), (0.10, 0.04), (0.12, 0.01)])
 def test_ten_particles_through_a_ring_rebound_as_finite_elements_do(speed: float, error: float) -> None:
-    """At 0.1 c0 the particles come near at first order only: 4.9 % at 2 mm, 3.6 % at 1 mm, 2.1 % at 0.5 mm."""
+    """At 0.1 c0 the particles come near slowly: 4.9 % at 2 mm, 3.6 % at 1 mm, 2.1 % at 0.5 mm."""
     assert rebound(0.001, speed) == pytest.approx(ELEMENTS[speed], rel=error)
 
 
