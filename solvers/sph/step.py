@@ -54,7 +54,7 @@ def strain(
         )  # fmt: skip
     if hoop is not None:
         rings.radial_strain(i0, i1, arrays)
-    if reference is not None:
+    if reference is not None and dt > 0.0:
         lagrangian.deformation(i0, i1, solid, dt, reference, arrays)
     if density_rate is not None:
         cures.density_diffusion(

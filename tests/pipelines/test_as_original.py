@@ -42,8 +42,12 @@ def test_the_originals_curve_is_met_as_the_original_does_it(shared: Path, tmp_pa
 
 @pytest.mark.slow
 def test_with_real_forces_the_block_bounces(shared: Path, tmp_path: Path) -> None:
-    """f is W(r)/W(h), four times the original's, to the fourth power; forces are masses times accelerations."""
-    centre, lowest, speed = computed(shared, tmp_path / "real")
+    """f is W(r)/W(h), four times the original's, to the fourth power; forces are masses times accelerations.
+
+    The block's sums stay plain, as the original's: with the gradient correction it keeps more of it as its own ringing
+    and leaves at 16.8.
+    """
+    centre, lowest, speed = computed(shared, tmp_path / "real", **{"sph.correction": False})
     assert lowest.min() > 0.4
     assert speed[-1] == pytest.approx(19.3, abs=0.2)
     assert centre.min() == pytest.approx(-0.217, abs=0.005)

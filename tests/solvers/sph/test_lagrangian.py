@@ -16,7 +16,7 @@ from zrno.solvers.contact.pinball import STIFF
 from zrno.solvers.errors import Diverged
 from zrno.solvers.exact.oscillating_plate import OscillatingPlate
 from zrno.solvers.materials import Elastic, sound_speed, von_mises
-from zrno.solvers.sph import Body, Problem, Solver, lagrangian, particle
+from zrno.solvers.sph import Body, Cures, Problem, Solver, lagrangian, particle
 from zrno.solvers.sph.ghosts import LIMIT, SYMMETRY, Plane
 from zrno.solvers.sph.nominal import KAPPA, PSI, nominal_stress
 from zrno.solvers.sph.surface import Facets
@@ -560,4 +560,17 @@ def test_a_body_that_stays_whole_meets_facets_that_were_far_away_at_the_start() 
     found = solver.frame().particles
     assert found["position"][:, 1].min() > 0.1
     assert 0.7 * 0.02 < found["velocity"][:, 1].mean() <= 0.02
+    assert solver.energy_report()["balance_error"] < 0.01
+
+
+def test_a_corrected_body_meets_one_that_stays_whole() -> None:
+    """The correction wants a strain before the first step, in which nothing has moved: no rate of deformation by it."""
+    x = np.concatenate([lattice((4, 4)), lattice((4, 4)) + np.array([0.0, 0.5, 0.0])])
+    v = np.repeat([[0.0, 0.01, 0.0], [0.0, -0.01, 0.0]], 16, axis=0)
+    bodies = BODY, dataclasses.replace(BODY, number=2, lagrangian=False)
+    p = block((4, 4), x=x, v=v, bodies=bodies, body=np.repeat([0, 1], 16), pinball=STIFF, cures=Cures(correction=True))
+    solver = Solver(p, threads=1)
+    solver.advance(20.0, 10**6)
+    velocity = solver.frame().particles["velocity"][:, 1].reshape(2, 16).mean(axis=1)
+    assert velocity == pytest.approx([-0.01, 0.01], rel=0.2)
     assert solver.energy_report()["balance_error"] < 0.01
