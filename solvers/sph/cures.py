@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..gather import LANES, ROOM, gather
 from ..jit import inlined_kernel, kernel
+from .packed import motion_of
 from .pairs import TINY
 from .smoothing import inverse_root, shape_slope, shape_value
 
@@ -26,19 +28,6 @@ def _slope(shape, r2, mean, dimension):
     if dimension > 2:
         factor *= inverse
     return factor * shape_slope(shape, q2 * iq, iq)
-
-
-@inlined_kernel
-def _value(shape, r2, mean, dimension):
-    """W / a_d of a pair."""
-    inverse = 1.0 / mean
-    q2 = r2 * inverse * inverse + TINY
-    factor = inverse
-    if dimension > 1:
-        factor *= inverse
-    if dimension > 2:
-        factor *= inverse
-    return factor * shape_value(shape, q2 * inverse_root(q2))
 
 
 @inlined_kernel
@@ -172,39 +161,66 @@ def stress_diffusion(i0, i1, offset, source, z, shape, x, y, zs, arrays, numbers
             rate[5, i] = scale * t_zx
 
 
-@kernel
-def smoothed_velocity(i0, i1, z, shape, factor, arrays, numbers, mean_velocity):
-    """v_i + factor sum_j 2 m_j/(rho_i + rho_j) (v_j - v_i) W_ij: XSPH (Monaghan 1989), with which particles move."""
-    x, y, u, v, h, rows = arrays.x, arrays.y, arrays.u, arrays.v, arrays.h, arrays.rows
-    mass, density, dimension = arrays.mass, arrays.density, numbers.dimension
-    if z is not None:
-        w = arrays.w
-    scale = 2.0 * factor * numbers.normal
+@inlined_kernel
+def smoothed_velocity(
+    i0, i1, first, count, rows, shape, packed, near, solid, h, mass, inverse_h2, scale, line, mean_velocity
+):  # fmt: skip
+    """v_i + factor sum_j 2 m_j/(rho_i + rho_j) (v_j - v_i) W_ij: XSPH (Monaghan 1989), with which particles move.
+
+    packed: see `packed.pack_smoothing`; near: a buffer. mass: None where all are equal and in the scale, which also has
+    the factor. The other arguments as in `pairs.velocity_gradient`.
+    """
+    x, y, z, u, v, w, density, size = motion_of(near, solid)
+    if h is None:
+        scale = scale / inverse_h2
     for i in range(i0, i1):
+        xi, yi, zi, ui, vi, wi, rho, _ = motion_of(packed[i], solid)
         a0 = 0.0
         a1 = 0.0
-        a2 = 0.0
-        xi, yi, ui, vi, hi, rho = x[i], y[i], u[i], v[i], h[i], density[i]
-        if z is not None:
-            zi, wi = z[i], w[i]
-        first = np.uint64(arrays.first[i])
-        for k in range(np.uint64(arrays.count[i])):
-            j = rows[first + k]
-            dx = xi - x[j]
-            dy = yi - y[j]
-            r2 = dx * dx + dy * dy
-            if z is not None:
-                dz = zi - z[j]
-                r2 += dz * dz
-            value = mass[j] / (rho + density[j]) * _value(shape, r2, 0.5 * (hi + h[j]), dimension)
-            a0 += value * (u[j] - ui)
-            a1 += value * (v[j] - vi)
-            if z is not None:
-                a2 += value * (w[j] - wi)
-        mean_velocity[0, i] = ui + scale * a0
-        mean_velocity[1, i] = vi + scale * a1
-        if z is not None:
-            mean_velocity[2, i] = wi + scale * a2
+        if solid is not None:
+            a2 = 0.0
+        if h is not None:
+            hi = 0.5 * h[i]
+        begin = first[i]
+        end = begin + count[i]
+        while begin < end:
+            some = min(ROOM, end - begin)
+            for at in range(0, some, LANES):
+                gather(packed, rows, begin + at, near, at, 8)
+            start = np.uint64(begin)
+            begin += some
+            for k in range(np.uint64(some)):
+                dx = xi - x[k]
+                dy = yi - y[k]
+                r2 = dx * dx + dy * dy
+                if solid is not None:
+                    dz = zi - z[k]
+                    r2 += dz * dz
+                if h is not None:
+                    mean = hi + 0.5 * size[k]
+                    inverse = 1.0 / (mean * (rho + density[k]))  # one division for the two
+                    ih = inverse * (rho + density[k])
+                    ih2 = ih * ih
+                    factor = scale * ih * (inverse * mean)
+                    if line is None:
+                        factor *= ih
+                    if solid is not None:
+                        factor *= ih
+                else:
+                    ih2 = inverse_h2
+                    factor = scale / (rho + density[k])
+                if mass is not None:
+                    factor *= mass[rows[start + k]]
+                q2 = r2 * ih2 + TINY
+                factor *= shape_value(shape, q2 * inverse_root(q2))
+                a0 += factor * (u[k] - ui)
+                a1 += factor * (v[k] - vi)
+                if solid is not None:
+                    a2 += factor * (w[k] - wi)
+        mean_velocity[0, i] = ui + a0
+        mean_velocity[1, i] = vi + a1
+        if solid is not None:
+            mean_velocity[2, i] = wi + a2
 
 
 @kernel

@@ -1,8 +1,9 @@
 """What the pair loops read of a neighbour, packed into its row of a table: a cache line (see `gather`).
 
-Packed anew before each of the two loops, of all that may stand in a list: particles, images, the dummy.
+Packed anew before each of the loops, of all that may stand in a list: particles, images, the dummy.
 
     motion, in the plane: x y u v volume h           in space: x y z u v w volume h
+    smoothing: as motion, with the density in place of the volume
     forces, in the plane: x y weight h, 3 or 4 of s  in space: x y, 6 of s; z stays where it is
     beside, in space, where one of them is there: weight h, the other 3 of s
 """
@@ -71,6 +72,31 @@ def pack_motion(thread, threads, sync, start, solid, h, hoop, plain, arrays):
             packed[i, 2] = u[i]
             packed[i, 3] = arrays.v[i]
             packed[i, 4] = arrays.volume[i]
+            if h is not None:
+                packed[i, 5] = h[i]
+    barrier(sync, threads)
+
+
+@kernel
+def pack_smoothing(thread, threads, sync, solid, h, arrays):
+    """What XSPH reads (`cures.smoothed_velocity`), of all entries. The threads meet after it. Arguments as above."""
+    packed = arrays.packed
+    a, b = share(len(arrays.x), thread, threads)
+    for i in range(a, b):
+        packed[i, 0] = arrays.x[i]
+        packed[i, 1] = arrays.y[i]
+        if solid is not None:
+            packed[i, 2] = arrays.z[i]
+            packed[i, 3] = arrays.u[i]
+            packed[i, 4] = arrays.v[i]
+            packed[i, 5] = arrays.w[i]
+            packed[i, 6] = arrays.density[i]
+            if h is not None:
+                packed[i, 7] = h[i]
+        else:
+            packed[i, 2] = arrays.u[i]
+            packed[i, 3] = arrays.v[i]
+            packed[i, 4] = arrays.density[i]
             if h is not None:
                 packed[i, 5] = h[i]
     barrier(sync, threads)

@@ -19,7 +19,7 @@ from ..jit import kernel
 from ..threads import barrier, claim, share
 from . import across, bearing, cures, driving, facing, ghosts, lagrangian, nominal, pairs, rest, rings, slip, walls
 from .momentum import momentum
-from .packed import pack_forces, pack_motion
+from .packed import pack_forces, pack_motion, pack_smoothing
 from .particle import INSTANT, critical_step, drift, each_law, half_work, kick
 
 # entries of `progress`, the loop's own memory
@@ -334,11 +334,13 @@ def advance(
                 g0, g1 = share(len(image_source), thread, threads)
                 ghosts.follow_motion(g0, g1, offset, z, image_source, image_sign, image_shift, arrays)
                 barrier(sync, threads)
+            pack_smoothing(thread, threads, sync, solid, h, arrays)
             c = claim(sync, thread, threads, chunks)
             while c < chunks:
                 cures.smoothed_velocity(
-                    c * chunk, min(n, (c + 1) * chunk), z, shape, smoothing, arrays, numbers, smoothed
-                )
+                    c * chunk, min(n, (c + 1) * chunk), arrays.first, arrays.count, arrays.rows, shape, arrays.packed,
+                    near[0], solid, h, mass, numbers.inverse_h2, 2.0 * smoothing * numbers.force_scale, line, smoothed,
+                )  # fmt: skip
                 c = claim(sync, thread, threads, chunks)
             barrier(sync, threads)
         moved = 0.0

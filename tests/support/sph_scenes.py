@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from zrno.solvers.materials import Elastic
-from zrno.solvers.sph import Body, Problem, Solver
+from zrno.solvers.sph import Body, Problem, Solver, cures, packed
 from zrno.solvers.sph.ghosts import PERIODIC, Plane
+from zrno.solvers.threads import meeting
 
 ELASTIC = Elastic.from_engineering(1.0, 0.3)
 
@@ -77,3 +78,18 @@ def jittered(shape: tuple[int, ...], amount: float = 0.25, seed: int = 3, spacin
     x = lattice(shape, (0.0,) * len(shape), spacing)
     x[:, : len(shape)] += amount * spacing * np.random.default_rng(seed).uniform(-1.0, 1.0, (len(x), len(shape)))
     return x
+
+
+def smoothed_velocities(solver: Solver, factor: float) -> np.ndarray:
+    """(d, n) what XSPH makes of the velocities that the solver's arrays now have."""
+    a, numbers, n = solver._arrays(), solver._numbers, solver.n
+    solid = True if numbers.dimension == 3 else None
+    h = None if solver._uniform_h else a.h
+    mass = None if solver._uniform_mass else a.mass
+    found = np.zeros((numbers.dimension, a.x.shape[0]))
+    packed.pack_smoothing(0, 1, meeting(1), solid, h, a)
+    cures.smoothed_velocity(
+        0, n, a.first, a.count, a.rows, solver._shape, a.packed, a.near[0, 0], solid, h, mass, numbers.inverse_h2,
+        2.0 * factor * numbers.force_scale, None, found,
+    )  # fmt: skip
+    return found[:, :n]

@@ -8,11 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from sph_scenes import ELASTIC, finished, impact, jittered, lattice, one_body, periodic
+from sph_scenes import ELASTIC, finished, impact, jittered, lattice, one_body, periodic, smoothed_velocities
 
 from zrno.solvers.materials import Elastic
 from zrno.solvers.sph import Cures, Plane, Problem, Solver, bearing, packed, pairs, particle
-from zrno.solvers.sph.cures import smoothed_velocity
 from zrno.solvers.sph.ghosts import SYMMETRY
 from zrno.solvers.sph.smoothing import value_at
 from zrno.solvers.sph.step import INSTANT
@@ -333,20 +332,18 @@ def test_smoothed_velocities_move_particles_and_conserve_momentum() -> None:
     assert moved[1] < 0.75 * moved[0]
 
 
-@pytest.mark.parametrize("shape", [(7, 6), pytest.param((4, 4, 4), marks=pytest.mark.slow)])
-def test_smoothed_velocities_are_the_sum_pair_by_pair(shape: tuple[int, ...]) -> None:
-    """Own smoothing lengths, densities and masses."""
+@pytest.mark.parametrize("own", [True, False])
+@pytest.mark.parametrize("shape", [(7, 6), (4, 4, 4)])
+def test_smoothed_velocities_are_the_sum_pair_by_pair(shape: tuple[int, ...], own: bool) -> None:
+    """Own densities, and own smoothing lengths and masses."""
     d, x = len(shape), jittered(shape, 0.2)
     n, noise = len(x), np.random.default_rng(5)
     v = noise.normal(size=(n, 3)) * (np.arange(3) < d)
-    problem = one_body(
-        x, v, dimension=d, h=noise.uniform(0.11, 0.13, n), density=noise.uniform(0.9, 1.1, n),
-        mass=noise.uniform(0.5, 1.0, n), cures=Cures(xsph=0.4),
-    )  # fmt: skip
+    changes = {"h": noise.uniform(0.11, 0.13, n), "mass": noise.uniform(0.5, 1.0, n)} if own else {}
+    problem = one_body(x, v, dimension=d, density=noise.uniform(0.9, 1.1, n), cures=Cures(xsph=0.4), **changes)
     solver = Solver(problem, threads=1)
     a, shape_of_kernel = solver._arrays(), solver._shape
-    found = np.zeros((d, a.x.shape[0]))
-    smoothed_velocity(0, n, a.z if d == 3 else None, shape_of_kernel, 0.4, a, solver._numbers, found)
+    found = smoothed_velocities(solver, 0.4)
     place = np.stack([a.x, a.y, a.z][:d])[:, :n]
     motion = np.stack([a.u, a.v, a.w][:d])[:, :n]
     for i in range(n):
