@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..bundle import bundle
 from ..contact.facets import facet_push, nearest_on_segment, nearest_on_triangle, normal_of_triangle
 from ..contact.friction import FORGET, follow, rub
 from ..jit import kernel
@@ -31,6 +32,7 @@ SLOTS = 2  # contacts that friction remembers
 TINY = 1e-30
 
 
+@bundle
 class Faces(NamedTuple):
     """What the loops see. x, v: (3, m) of the nodes; motion: (2,) fastest node, way of it since the list was built.
     pace: (f,) speed of each facet's fastest node, None where nothing sleeps.

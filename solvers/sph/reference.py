@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..bundle import bundle
 from ..jit import exact_kernel, kernel
 from ..neighbours import Cells, NeighbourList
 from . import ghosts
@@ -27,6 +28,7 @@ from .state import Floats, State
 NEAREST = 1e-3  # of h: particles nearer to a symmetry plane lie on it
 
 
+@bundle
 class Reference(NamedTuple):
     """What the loops of `lagrangian` know of the reference configuration; nothing of it changes in a run.
 

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..bundle import bundle
 from ..gather import LANES, buffers, table
 from ..jit import kernel
 from ..neighbours import NeighbourList
@@ -17,6 +18,7 @@ from .nominal import HOURGLASS
 Floats = NDArray[np.float64]
 
 
+@bundle
 class Arrays(NamedTuple):
     """Rows of the state that the loops see, each (m,) or (k, m): n particles, images, the dummy that pads rows.
 
@@ -122,6 +124,7 @@ class Arrays(NamedTuple):
     near: Any
 
 
+@bundle
 class Numbers(NamedTuple):
     """The constants of a run.
 
@@ -269,6 +272,7 @@ class State:
         self.lasting = at if has.sleep else self.slices["state"].stop
         self._rows = at
         self._packs = packs
+        self._seen: tuple[tuple[Any, ...], Arrays] | None = None
         self.id: NDArray[np.int64]
         self.material: NDArray[np.int64]
         self.fixed: NDArray[np.int64]
@@ -335,7 +339,13 @@ class State:
         self.rows("density")[:, self.dummy] = 1.0
 
     def arrays(self, neighbours: NeighbourList, others: NeighbourList, reduced: Floats) -> Arrays:
-        """What the loops see; views."""
+        """What the loops see; views. The same object as long as they are the same arrays."""
+        parts = (
+            self.numbers, neighbours.first, neighbours.count, neighbours.rows, others.first, others.count, others.rows,
+            reduced,
+        )  # fmt: skip
+        if self._seen is not None and all(a is b for a, b in zip(parts, self._seen[0], strict=True)):
+            return self._seen[1]
         axes = {
             f"{axis}{suffix}": self.row(f"x{suffix}", k)
             for suffix in ("", "_half", "_list", "_start")
@@ -345,7 +355,7 @@ class State:
         axes |= {f"{letter}{axis}": self.row(letter, k) for letter in "acb" for k, axis in enumerate("xyz")}
         single = {name: self.row(name) for name in ONE_ROW}
         several = {name: self.rows(name) for name in ALL_ROWS}
-        return Arrays(
+        seen = Arrays(
             **axes,
             **single,
             **several,
@@ -363,6 +373,8 @@ class State:
             beside=self.beside,
             near=buffers(len(reduced)),
         )
+        self._seen = parts, seen
+        return seen
 
 
 # what the loops see under its own name: one row of it, or all
