@@ -47,6 +47,30 @@ def stress_of(line, more, solid, corrected):
 
 
 @kernel
+def _pack(thread, threads, sync, start, solid, h, x, y, z, u, v, w, weight, packed):
+    """Lines of motion, of all entries from `start` on. The threads meet after it."""
+    a, b = share(len(x) - start, thread, threads)
+    for i in range(start + a, start + b):
+        packed[i, 0] = x[i]
+        packed[i, 1] = y[i]
+        if solid is not None:
+            packed[i, 2] = z[i]
+            packed[i, 3] = u[i]
+            packed[i, 4] = v[i]
+            packed[i, 5] = w[i]
+            packed[i, 6] = weight[i]
+            if h is not None:
+                packed[i, 7] = h[i]
+        else:
+            packed[i, 2] = u[i]
+            packed[i, 3] = v[i]
+            packed[i, 4] = weight[i]
+            if h is not None:
+                packed[i, 5] = h[i]
+    barrier(sync, threads)
+
+
+@kernel
 def pack_motion(thread, threads, sync, start, solid, h, hoop, plain, arrays):
     """What `velocity_gradient` reads, of all entries from `start` on. The threads meet after it.
 
@@ -55,51 +79,19 @@ def pack_motion(thread, threads, sync, start, solid, h, hoop, plain, arrays):
     if plain is None:
         return
     u = arrays.u if hoop is None else hoop
-    packed = arrays.packed
-    a, b = share(len(arrays.x) - start, thread, threads)
-    for i in range(start + a, start + b):
-        packed[i, 0] = arrays.x_half[i]
-        packed[i, 1] = arrays.y_half[i]
-        if solid is not None:
-            packed[i, 2] = arrays.z_half[i]
-            packed[i, 3] = u[i]
-            packed[i, 4] = arrays.v[i]
-            packed[i, 5] = arrays.w[i]
-            packed[i, 6] = arrays.volume[i]
-            if h is not None:
-                packed[i, 7] = h[i]
-        else:
-            packed[i, 2] = u[i]
-            packed[i, 3] = arrays.v[i]
-            packed[i, 4] = arrays.volume[i]
-            if h is not None:
-                packed[i, 5] = h[i]
-    barrier(sync, threads)
+    _pack(
+        thread, threads, sync, start, solid, h, arrays.x_half, arrays.y_half, arrays.z_half, u, arrays.v, arrays.w,
+        arrays.volume, arrays.packed,
+    )  # fmt: skip
 
 
 @kernel
 def pack_smoothing(thread, threads, sync, solid, h, arrays):
-    """What XSPH reads (`cures.smoothed_velocity`), of all entries. The threads meet after it. Arguments as above."""
-    packed = arrays.packed
-    a, b = share(len(arrays.x), thread, threads)
-    for i in range(a, b):
-        packed[i, 0] = arrays.x[i]
-        packed[i, 1] = arrays.y[i]
-        if solid is not None:
-            packed[i, 2] = arrays.z[i]
-            packed[i, 3] = arrays.u[i]
-            packed[i, 4] = arrays.v[i]
-            packed[i, 5] = arrays.w[i]
-            packed[i, 6] = arrays.density[i]
-            if h is not None:
-                packed[i, 7] = h[i]
-        else:
-            packed[i, 2] = arrays.u[i]
-            packed[i, 3] = arrays.v[i]
-            packed[i, 4] = arrays.density[i]
-            if h is not None:
-                packed[i, 5] = h[i]
-    barrier(sync, threads)
+    """What XSPH reads (`cures.smoothed_velocity`), of all entries. Arguments as above."""
+    _pack(
+        thread, threads, sync, 0, solid, h, arrays.x, arrays.y, arrays.z, arrays.u, arrays.v, arrays.w, arrays.density,
+        arrays.packed,
+    )  # fmt: skip
 
 
 @kernel
