@@ -200,7 +200,6 @@ def test_fluid_friction_drags_by_the_surface_in_contact() -> None:
     assert solver.history()["contact_dissipated"] == pytest.approx(force * 0.1 * 0.02, rel=0.05)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", LAWS)
 @pytest.mark.parametrize(("density", "young"), [(1000.0, YOUNG), (1.0, 1e6 * YOUNG), (1000.0, 1e6 * YOUNG)])
 def test_bodies_that_differ_much_stay_stable(kind: str, density: float, young: float) -> None:
@@ -230,7 +229,7 @@ def test_coincident_particles_of_two_bodies_are_named(kind: str) -> None:
     assert caught.value.item in (8, 41)
 
 
-@pytest.mark.parametrize("kind", [*LAWS, pytest.param("plane", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("kind", [*LAWS, "plane"])
 def test_nothing_passes_at_three_times_the_speed_of_sound(kind: str) -> None:
     speed = 1.5 * C
     if kind == "plane":

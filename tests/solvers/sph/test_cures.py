@@ -36,7 +36,7 @@ def gradients(problem: Problem, slope: np.ndarray) -> np.ndarray:
     return np.array(a.gradient[:, :n].T.reshape(n, d, d))
 
 
-@pytest.mark.parametrize("shape", [pytest.param((9, 9), marks=pytest.mark.slow), (5, 5, 5)])
+@pytest.mark.parametrize("shape", [(9, 9), (5, 5, 5)])
 def test_corrected_gradients_of_linear_fields_are_exact_in_disorder_and_at_free_surfaces(
     shape: tuple[int, ...],
 ) -> None:
@@ -137,7 +137,6 @@ def spinning(cures: Cures) -> float:
     return float(now / before - 1.0)
 
 
-@pytest.mark.slow
 def test_a_disk_that_spins_keeps_its_angular_momentum_by_the_correction_alone() -> None:
     """Plain gradients see half of a turn at a free surface and strain it: the disk swings back within half a turn."""
     assert abs(spinning(Cures(correction=True))) < 1e-3
@@ -164,7 +163,7 @@ def drift_of_spin(amount: float, law: Any, cures: Cures) -> float:
     return moment(finished(problem, 8.0)) / moment(Solver(problem)) - 1.0
 
 
-@pytest.mark.parametrize("stress", [0.0, pytest.param(0.3, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("stress", [0.0, 0.3])
 def test_angular_momentum_of_isotropic_stress_is_exact(stress: float) -> None:
     """Pressure, its viscosity and the artificial stress act along the pair; only stress that is not isotropic turns."""
     cures = Cures(artificial_stress=stress)
