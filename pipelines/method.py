@@ -86,7 +86,7 @@ class Sph(Section):
     acceleration: Annotated[list[Row], Field(min_length=2)] | None = None
     laws: dict[str, Soil] = Field(default_factory=dict)
     bearing: list[str] = Field(default_factory=list)
-    local_steps: bool | Literal["auto"] = False
+    local_steps: bool | Literal["auto"] = "auto"
     sleep: Part = 0.0
 
 

@@ -45,6 +45,16 @@ def classes(p: Problem, wave: Floats, *, xsph: bool) -> NDArray[np.bool_] | None
     """
     if p.local_steps is False:
         return None
+    hindered = _hindrance(p, xsph=xsph)
+    if hindered is not None and p.local_steps:
+        raise ValueError(f"local time steps do not go together with {hindered}")
+    stiff, ratio = _widest_gap(p, wave)
+    if hindered is not None or ratio < (LEAST_RATIO if p.local_steps else RATIO):
+        return None
+    return stiff
+
+
+def _hindrance(p: Problem, *, xsph: bool) -> str | None:
     hindered = {
         "kernel contact between bodies (the potential or pinballs do)": not p.apart,
         "boundary planes": bool(p.planes),
@@ -54,23 +64,32 @@ def classes(p: Problem, wave: Floats, *, xsph: bool) -> NDArray[np.bool_] | None
         "base acceleration by curve": p.body_curve is not None,
         "XSPH": xsph,
         "births": p.birth is not None,
+        "sleep": p.sleep > 0.0,
         "walls that bear their neighbours' stress": any(b.bearing for b in p.bodies),
         "a structure": p.driven is not None or p.facets is not None,
     }
-    for name, there in hindered.items():
-        if there:
-            if p.local_steps is None:
-                return None
-            raise ValueError(f"local time steps do not go together with {name}")
+    return next((name for name, there in hindered.items() if there), None)
+
+
+def _widest_gap(p: Problem, wave: Floats) -> tuple[NDArray[np.bool_], float]:
+    """(bodies,) which lie below the widest gap between steps, and by how much those beyond it are longer; 1 without."""
     steps = body_steps(p, wave)
     moving = np.sort(steps[np.isfinite(steps)])
     if len(moving) < 2:
-        return None
+        return np.zeros(len(steps), bool), 1.0
     ratios = moving[1:] / moving[:-1]
     k = int(np.argmax(ratios))
-    if ratios[k] < (RATIO if p.local_steps is None else LEAST_RATIO):
-        return None
-    return np.asarray(steps <= moving[k])
+    return np.asarray(steps <= moving[k]), float(ratios[k])
+
+
+def advice(p: Problem, wave: Floats, *, xsph: bool) -> str:
+    """For the log: who makes the step of all where local steps would be worth while and cannot be; else nothing."""
+    hindered = _hindrance(p, xsph=xsph)
+    stiff, ratio = _widest_gap(p, wave)
+    if p.local_steps is not None or p.original or hindered is None or ratio < RATIO:
+        return ""
+    names = ", ".join(b.name for b, is_stiff in zip(p.bodies, stiff, strict=True) if is_stiff)
+    return f", all in the steps of {names}, {ratio:.0f} times what others need: no local steps with {hindered}"
 
 
 def body_steps(p: Problem, wave: Floats) -> Floats:

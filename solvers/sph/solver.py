@@ -120,7 +120,7 @@ class Solver:
         """What the loops were built for, for the log."""
         text = setup.described(self.problem, self._contact, self._cures, self._has, self.threads)
         if self._stiff is None:
-            return text
+            return text + local.advice(self.problem, self._numbers.wave, xsph=self._cures.xsph > 0.0)
         names = ", ".join(b.name for b, stiff in zip(self.problem.bodies, self._stiff, strict=True) if stiff)
         inner = self._progress[step.NEXT] / self._inner[local.FAST_NEXT]
         return f"{text}, local steps: about {max(1, round(inner))} of {names} in one of the others"

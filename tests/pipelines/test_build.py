@@ -286,6 +286,7 @@ def test_a_soil_takes_the_moduli_of_the_deck_and_a_wall_is_held(tmp_path: Path) 
 def test_local_steps(tmp_path: Path, said: object, given: bool | None) -> None:
     problem = particle_problem(_read(tmp_path), "deck.mcm", method=of_options({"sph.local_steps": said}))
     assert problem.local_steps is given
+    assert particle_problem(_read(tmp_path), "deck.mcm").local_steps is None
 
 
 def test_all_refusals_are_said_and_a_mesh_is_no_deck(tmp_path: Path) -> None:

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from sph_scenes import lattice
 
-from tests.support.sph_scenes import lattice
 from zrno.solvers.contact.friction import Coulomb
 from zrno.solvers.materials import Elastic
 from zrno.solvers.neighbours import NeighbourList
@@ -148,6 +148,18 @@ def test_by_itself_only_where_it_is_worth_while() -> None:
         stiff(dataclasses.replace(p, relaxation=0.99, local_steps=True))
     with pytest.raises(ValueError, match="do not go together with kernel contact"):
         stiff(dataclasses.replace(p, pinball=None, friction=None, local_steps=True))
+
+
+def test_the_log_says_who_makes_the_step_where_local_steps_cannot_be() -> None:
+    def said(**changes: Any) -> str:
+        problem = on_plate(local_steps=None, **changes)
+        return local.advice(problem, _numbers(problem).wave, xsph=False)
+
+    assert said() == ""  # they can be
+    assert said(relaxation=0.99) == (
+        ", all in the steps of steel, 50 times what others need: no local steps with dynamic relaxation"
+    )
+    assert said(relaxation=0.99, bodies=(SAND, dataclasses.replace(SAND, number=2))) == ""
 
 
 def _held(p: Problem, **steel: Any) -> Problem:
