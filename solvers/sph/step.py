@@ -18,9 +18,10 @@ import numpy as np
 from ..jit import kernel
 from ..threads import barrier, claim, share
 from . import across, bearing, cures, driving, facing, ghosts, lagrangian, nominal, pairs, rest, rings, slip, walls
+from .critical import critical_step
 from .momentum import momentum
 from .packed import pack_forces, pack_motion, pack_smoothing
-from .particle import INSTANT, critical_step, drift, each_law, half_work, kick
+from .particle import INSTANT, drift, each_law, half_work, kick
 
 # entries of `progress`, the loop's own memory
 TIME, LAST, NEXT, STEPS, PENDING, FIRST, BAD = range(7)

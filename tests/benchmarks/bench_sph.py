@@ -22,7 +22,7 @@ import numpy as np  # noqa: E402  (the clock starts before the imports)
 from zrno.solvers.jit import compile_seconds  # noqa: E402
 from zrno.solvers.materials import Elastic  # noqa: E402
 from zrno.solvers.neighbours import Cells  # noqa: E402
-from zrno.solvers.sph import Body, Problem, Solver, momentum, packed, pairs, particle  # noqa: E402
+from zrno.solvers.sph import Body, Problem, Solver, critical, momentum, packed, pairs, particle  # noqa: E402
 from zrno.solvers.threads import meeting  # noqa: E402
 
 STEPS = 100
@@ -97,7 +97,7 @@ def phases(problem: Problem, builds: float) -> dict[str, float]:
                     0, n, a.z, m, law, 1e-12, None, None, None, None, None, None, a, k
                 ), n)
             for m in (0, 1)),
-        "critical step": nanoseconds(lambda: particle.critical_step(0, n, a.z, None, k, a), n),
+        "critical step": nanoseconds(lambda: critical.critical_step(0, n, a.z, None, k, a), n),
         "kick": nanoseconds(lambda: particle.kick(0, n, a.z, None, None, None, 1e-15, 1e-15, a, k), n),
         "drift": nanoseconds(lambda: particle.drift(0, n, a.z, None, None, None, None, 1.0, 1e-15, a, k), n),
         "list": builds * nanoseconds(

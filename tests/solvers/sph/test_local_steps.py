@@ -15,7 +15,7 @@ from zrno.solvers.materials import Elastic
 from zrno.solvers.neighbours import NeighbourList
 from zrno.solvers.sph import Body, Problem, Solver, local, setup
 from zrno.solvers.sph.contact import contact_of
-from zrno.solvers.sph.particle import critical_step
+from zrno.solvers.sph.critical import critical_step
 from zrno.solvers.sph.smoothing import shape_of
 from zrno.solvers.sph.state import State
 
