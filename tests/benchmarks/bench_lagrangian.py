@@ -48,7 +48,7 @@ def phases(problem: Problem) -> dict[str, float]:
             lambda: particle.constitutive(0, n, a.z, 0, s._laws[0], 1e-12, *[None] * 6, a, k), n),
         "nominal stress": nanoseconds(lambda: nominal_stress(0, n, a.z, r, a), n),
         "force": nanoseconds(lambda: lagrangian.internal_force(0, n, a.z, None, r, a, k), n),
-        "critical step": nanoseconds(lambda: critical.critical_step(0, n, a.z, None, k, a), n),
+        "critical step": nanoseconds(lambda: critical.critical_step(0, n, a.z, None, None, k, a), n),
         "kick": nanoseconds(lambda: particle.kick(0, n, a.z, None, None, None, 1e-15, 1e-15, a, k), n),
         "drift": nanoseconds(lambda: particle.drift(0, n, a.z, None, None, None, None, 1.0, 1e-15, a, k), n),
     }  # fmt: skip

@@ -97,7 +97,7 @@ def phases(problem: Problem, builds: float) -> dict[str, float]:
                     0, n, a.z, m, law, 1e-12, None, None, None, None, None, None, a, k
                 ), n)
             for m in (0, 1)),
-        "critical step": nanoseconds(lambda: critical.critical_step(0, n, a.z, None, k, a), n),
+        "critical step": nanoseconds(lambda: critical.critical_step(0, n, a.z, None, None, k, a), n),
         "kick": nanoseconds(lambda: particle.kick(0, n, a.z, None, None, None, 1e-15, 1e-15, a, k), n),
         "drift": nanoseconds(lambda: particle.drift(0, n, a.z, None, None, None, None, 1.0, 1e-15, a, k), n),
         "list": builds * nanoseconds(
