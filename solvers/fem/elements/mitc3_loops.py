@@ -279,15 +279,14 @@ def frames(nodes, x, directors, half, points):
     """Local frames (e, g, 3, 3), a unit vector a row, on the mid-surface of the first shape."""
     out = np.empty((nodes.shape[0], len(points), 3, 3))
     reference, thick, base = np.empty((3, 3)), np.empty((3, 3)), np.empty((5, 3))
-    frame, dual, local = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
+    dual, local = np.empty((3, 3)), np.empty((3, 3))
     for q in range(nodes.shape[0]):
         for i in range(3):
             for m in range(3):
                 reference[i, m] = x[nodes[q, i], m]
                 thick[i, m] = half[q, i] * directors[q, i, m]
         for g in range(len(points)):
-            volume_at(points[g, 0], points[g, 1], 0.0, reference, thick, base, frame, dual, local)
-            out[q, g] = frame
+            volume_at(points[g, 0], points[g, 1], 0.0, reference, thick, base, out[q, g], dual, local)
     return out
 
 

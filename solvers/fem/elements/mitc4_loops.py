@@ -277,14 +277,13 @@ def frames(nodes, x, directors, half, points):
     out = np.empty((nodes.shape[0], len(points), 3, 3))
     reference, thick = np.empty((4, 3)), np.empty((4, 3))
     values, by_r, by_s, base = np.empty(4), np.empty(4), np.empty(4), np.empty((5, 3))
-    frame, dual, local = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
+    dual, local = np.empty((3, 3)), np.empty((3, 3))
     for q in range(nodes.shape[0]):
         gather_reference(nodes, q, x, directors, half, reference, thick)
         for g in range(len(points)):
             shape_at(points[g, 0], points[g, 1], values, by_r, by_s)
             base_at(values, by_r, by_s, reference, thick, base)
-            frame_at(base, 0.0, frame, dual, local)
-            out[q, g] = frame
+            frame_at(base, 0.0, out[q, g], dual, local)
     return out
 
 
