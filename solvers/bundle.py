@@ -30,7 +30,8 @@ class Bundle(types.Type):  # type: ignore[misc]
     def __init__(self, tuple_class: type, fields: tuple[types.Type, ...]) -> None:
         self.tuple_class = tuple_class
         self.fields = dict(zip(tuple_class._fields, fields, strict=True))  # type: ignore[attr-defined]
-        super().__init__(name=f"{tuple_class.__name__}({', '.join(map(str, fields))})")
+        named = ", ".join(f"{name}: {field}" for name, field in self.fields.items())  # the type is what its name says
+        super().__init__(name=f"{tuple_class.__module__}.{tuple_class.__qualname__}({named})")
 
     def place(self, name: str) -> int:
         """Words before a field."""

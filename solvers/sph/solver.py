@@ -229,6 +229,7 @@ class Solver:
         sort False: from where the last list was built, as it was.
         """
         s = self._state
+        s.forget()
         if sort:
             last = float(self._progress[step.LAST])
             if self.problem.planes:

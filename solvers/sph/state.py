@@ -338,6 +338,10 @@ class State:
         self.rows("h")[:, self.dummy] = self.rows("h")[:, : self.n].max()
         self.rows("density")[:, self.dummy] = 1.0
 
+    def forget(self) -> None:
+        """Let go of what `arrays` gave, before lists or rows are made anew: the old ones would stand beside them."""
+        self._seen = None
+
     def arrays(self, neighbours: NeighbourList, others: NeighbourList, reduced: Floats) -> Arrays:
         """What the loops see; views. The same object as long as they are the same arrays."""
         parts = (

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+import numba
 import numpy as np
 import pytest
 
@@ -81,3 +82,20 @@ def test_another_instance_has_its_own_arrays() -> None:
 def test_what_a_bundle_cannot_hold_is_named() -> None:
     with pytest.raises(TypeError, match=r"Fields\.factor is complex128: a bundle does not hold that"):
         all_of(None, fields()._replace(factor=1j))
+
+
+def test_the_same_fields_in_another_order_are_another_type() -> None:
+    """The type is what its name says: field types alone would find the wrong places."""
+
+    class Turned(NamedTuple):
+        low: float
+        high: float
+
+    class Straight(NamedTuple):
+        high: float
+        low: float
+
+    Straight.__name__, Straight.__qualname__ = Turned.__name__, Turned.__qualname__
+    high = numba.njit(lambda given: given.high)
+    assert high(bundle(Turned)(1.0, 2.0)) == 2.0
+    assert high(bundle(Straight)(2.0, 1.0)) == 2.0

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import weakref
 from typing import Any
 
 import numpy as np
 import pytest
-from sph_scenes import ELASTIC, finished, impact, lattice
+from sph_scenes import ELASTIC, finished, impact, lattice, one_body
 
 from zrno.solvers.errors import Diverged
 from zrno.solvers.materials import Elastic, sound_speed, von_mises
+from zrno.solvers.neighbours import NeighbourList
 from zrno.solvers.sph import Body, Problem, Solver
 from zrno.solvers.sph.smoothing import Cubic, normaliser, slope_at
 
@@ -232,3 +234,22 @@ def test_a_step_far_too_long_is_caught() -> None:
 def test_problems_that_are_none_are_refused(change: dict[str, Any], wrong: str) -> None:
     with pytest.raises(ValueError, match=wrong):
         impact(2, **change)
+
+
+def test_old_lists_are_let_go_before_new_ones_are_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    """They are a third of a run's memory, and what the kernels were given holds them too."""
+    solver = Solver(one_body(lattice((5, 5), (0.0, 0.0))), threads=1)
+    solver.advance(1.0, 2)
+    rows = weakref.ref(solver._list.rows)
+    build = NeighbourList.build
+    gone = []
+
+    def grown(self: NeighbourList, *arguments: object, **options: object) -> None:
+        self.rows = np.empty(0, np.uint32)
+        gone.append(rows() is None)
+        self._room = np.zeros_like(self._room)
+        build(self, *arguments, **options)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(NeighbourList, "build", grown)
+    solver._rebuild()
+    assert gone == [True]
